@@ -6,10 +6,12 @@ Usage: bodies.py MAREY DATA [--seconds 20] [--sigma 0.2] [--missing 0.05] [--see
 DATA is the folder that tests call MAREY_DATA. Needs numpy and scipy (PyPI, or Debian's python3-scipy), which reads MATLAB's files. Printed:
   noise      RMS error of the pose where three markers or more are seen, against the Cramer-Rao bound of those very markers
   flips      of an asymmetric body: instants that are more than 5 degrees off; losses: instants with three markers or more without a pose
-  symmetric  the same path with a body that appears the same after half a turn, all hidden for 0.05 to 0.5 s: gaps after which it is turned
+  symmetric  the same path with a body that appears the same after half a turn, all hidden for 0.05 to 0.5 s: gaps after which it is turned, gaps
+             after which it is reported that it may be, and those turned without that
   identical  four bodies alike on four paths through each other: instants at which one bears another's name
 """
 import argparse
+import json
 import pathlib
 import sqlite3
 import subprocess
@@ -78,8 +80,9 @@ def poses_of(take):
 def tracking(marey, work, frames, layouts):
     write_points(work / "points.csv", frames)
     write_bodies(work / "bodies.toml", layouts)
-    subprocess.run([marey, "body", "track", work / "points.csv", work / "bodies.toml", "-o", work / "out.marey", "-q"], check=True)
-    return poses_of(work / "out.marey")
+    command = [marey, "body", "track", work / "points.csv", work / "bodies.toml", "-o", work / "out.marey", "--json"]
+    reported = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    return poses_of(work / "out.marey"), [one["frame"] for one in reported["in_question"]]
 
 
 def angle(a, b):
@@ -92,7 +95,7 @@ def noise(marey, work, position, rotation, sigma, missing, random):
     truth = np.einsum("nij,mj->nmi", rotation, ASYMMETRIC) + position[:, None]
     visible = random.random(truth.shape[:2]) >= missing
     seen = truth + random.normal(0, sigma, truth.shape)
-    found = tracking(marey, work, [seen[i][visible[i]] for i in range(len(seen))], [ASYMMETRIC]).get(1)
+    found = tracking(marey, work, [seen[i][visible[i]] for i in range(len(seen))], [ASYMMETRIC])[0].get(1)
     enough = visible.sum(1) >= 3
     at, pose, tracked = found
     at, pose = at[tracked], pose[tracked]
@@ -125,15 +128,20 @@ def symmetric(marey, work, position, rotation, sigma, random):
         gaps.append((at, at + length))
         at += length + int(random.uniform(0.4, 0.8) * RATE)
     seen = truth + random.normal(0, sigma, truth.shape)
-    at, pose, tracked = tracking(marey, work, [seen[i] if visible[i] else [] for i in range(len(seen))], [SYMMETRIC])[1]
+    poses, in_question = tracking(marey, work, [seen[i] if visible[i] else [] for i in range(len(seen))], [SYMMETRIC])
+    at, pose, tracked = poses[1]
     turned = np.full(len(truth), -1)
     turned[at[tracked]] = angle(pose[tracked, :, :3], rotation[at[tracked]]) > np.pi / 2
-    flips = 0
+    flips = reported = unreported = 0
     for begin, end in gaps:
         before, after = turned[:begin][turned[:begin] >= 0], turned[end + int(0.1 * RATE):]
         after = after[after >= 0]
-        flips += bool(len(before) and len(after) and before[-1] != after[0])
-    return flips, len(gaps)
+        flip = bool(len(before) and len(after) and before[-1] != after[0])
+        asked = any(end <= frame < end + 0.1 * RATE for frame in in_question)
+        flips += flip
+        reported += asked
+        unreported += flip and not asked
+    return flips, reported, unreported, len(gaps)
 
 
 def identical(marey, work, stretches, sigma, missing, random):
@@ -149,7 +157,7 @@ def identical(marey, work, stretches, sigma, missing, random):
         points = [r[i] @ place + p[i] + apart[b] + random.normal(0, sigma, 3) for b, (p, r) in enumerate(truths) for place in layout
                   if random.random() >= missing]
         frames.append([points[k] for k in random.permutation(len(points))])
-    found = tracking(marey, work, frames, [layout] * 4)
+    found = tracking(marey, work, frames, [layout] * 4)[0]
     names, swaps, total = {}, 0, 0
     for body, (at, pose, tracked) in found.items():
         for i, where in zip(np.flatnonzero(tracked), at[tracked]):
@@ -180,8 +188,8 @@ def main():
         print(f"{name}: turn {np.degrees(turn):.4f} deg, bound {np.degrees(bound_turn):.4f}, ratio {turn / bound_turn:.3f}; "
               f"place {1000 * shift:.4f} mm, bound {1000 * bound_shift:.4f}, ratio {shift / bound_shift:.3f}; "
               f"{flips} flips, {losses} losses in {count} instants")
-        turned, gaps = symmetric(options.marey, work, position, rotation, sigma, random)
-        print(f"{name}: symmetric, {turned} of {gaps} gaps turned")
+        turned, reported, unreported, gaps = symmetric(options.marey, work, position, rotation, sigma, random)
+        print(f"{name}: symmetric, {turned} of {gaps} gaps turned; {reported} in question, {unreported} turned without that")
     swaps, total = identical(options.marey, work, stretches, sigma, options.missing, random)
     print(f"four identical bodies: {swaps} of {total} instants under another's name")
 

@@ -1,7 +1,6 @@
 // Which of the poses in which it appears the same a body has: the part of BodyTracker that decides late.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "marey/assign/no_index.h"
@@ -12,18 +11,17 @@ namespace {
 
 constexpr double kProof = 25;         // log-likelihood ratio that turns a body
 constexpr double kMaxAnInstant = 2;   // of that
-constexpr double kUnforeseen = 0.01;  // of returns, in which a body was turned as nothing before had been
+constexpr double kTailFreedoms = 3;   // of how far a body is from where it is due
 constexpr double kInQuestion = 0.02;  // from this probability on another pose is reported
 
 double angle_between(const Matrix<3>& a, const Matrix<3>& b) {
   return geometry::angle_axis_of(a * b.transpose()).norm();
 }
 
-/// The density of a body's turning to be so far from where it is due, about all three axes: normal, or, in a hundredth of cases,
-/// anywhere.
+/// How likely it is to be so far from where it is due, but for a factor: Student's distribution about all three axes, for a
+/// variance that was measured on other intervals says little of the rarest.
 double likelihood(double angle, double variance) {
-  const double normal = std::exp(-angle * angle / (2 * variance)) / std::pow(2 * std::numbers::pi * variance, 1.5);
-  return (1 - kUnforeseen) * normal + kUnforeseen / (8 * std::numbers::pi * std::numbers::pi);
+  return std::pow(1 + angle * angle / (kTailFreedoms * variance), -(kTailFreedoms + 3) / 2);
 }
 
 /// Which turn it is to be turned by `first`, then by `second`, counted from 1; 0: none.
