@@ -8,6 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/register.h"
+#include "marey/format/take/take_file.h"
 #include "marey/pipeline/bodies/bodies_in_space.h"
 
 #include "command_line.h"
@@ -75,13 +76,21 @@ void run(DefineCommand& command) {
   }
 }
 
+/// What takes the other pose from a frame on; a take alone keeps both.
+std::string command_to_turn(const std::string& out, const std::string& body, std::int64_t frame) {
+  if (!format::take::is_take(out)) return "write a take (-o NAME.marey), which keeps both poses";
+  const bool quoted = body.find_first_of(" ,\t") != std::string::npos;
+  return quoted ? fmt::format("marey edit {} 'turn \"{}\" {}:'", out, body, frame)
+                : fmt::format("marey edit {} \"turn {} {}:\"", out, body, frame);
+}
+
 /// The questions that the markers cannot answer, and the command that answers each.
 void print_in_question(const BodyTrackCommand& command, const pipeline::bodies::TrackBodiesSummary& summary) {
   constexpr std::size_t kMaxPrinted = 10;
   for (std::size_t i = 0; i < std::min(summary.in_question.size(), kMaxPrinted); ++i) {
     const auto& one = summary.in_question[i];
-    fmt::print(stderr, "  in question: from frame {} on ({:.2f} s) {} may be {} ({:.0f} %); if so: marey edit {} \"turn {} {}:\"\n",
-               one.frame, seconds(one.time), one.body, one.turn, 100 * one.probability, command.out, one.body, one.frame);
+    fmt::print(stderr, "  in question: from frame {} on ({:.2f} s) {} may be {} ({:.0f} %); if so: {}\n", one.frame,
+               seconds(one.time), one.body, one.turn, 100 * one.probability, command_to_turn(command.out, one.body, one.frame));
   }
   if (summary.in_question.size() > kMaxPrinted)
     fmt::print(stderr, "  and {} more; --json lists all\n", summary.in_question.size() - kMaxPrinted);

@@ -142,6 +142,12 @@ class BodiesAndLabels(unittest.TestCase):
                     file.write(f"{frame},{time},{number + 4 * frame}," + ",".join(f"{c:.5f}" for c in place) + "\n")
         done = self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey")
         self.assertRegex(done.stderr, r'in question: from frame \d+ on \(\d+\.\d\d s\) table may be turned 180° about its z axis \(\d+ %\); if so: marey edit racket.marey "turn table \d+:"')
+        other = self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.csv", "--format", "poses")
+        self.assertIn("if so: write a take (-o NAME.marey), which keeps both poses", other.stderr)
+        (self.folder / "my racket.csv").write_text((self.folder / "table.csv").read_text())
+        named = self.marey("body", "track", "points.csv", "my racket.csv", "-o", "named.marey")
+        turn = shlex.split(re.search(r"if so: marey (edit .*)", named.stderr).group(1))
+        self.marey(*turn)
         first = json.loads(self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey", "--json").stdout)["in_question"][0]
         self.assertIn(first["frame"], (300, 600, 900))
         self.assertTrue(0.02 <= first["probability"] <= 0.98)

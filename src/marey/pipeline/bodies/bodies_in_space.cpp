@@ -65,8 +65,19 @@ void require_space(const RecordingHeader& header, const std::string& path) {
     throw Error("{}: bodies are found among points in space, and these positions are {}", path, to_string(header.frame));
 }
 
-std::string label_of(const std::vector<Body>& bodies, BodyId id) {
-  return std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) { return body.id == id; })->label;
+/// The returns that were decided at this instant, and may be wrong.
+void add_in_question(const solve::bodies::BodyTracker& tracker, const SettledInstants& settled,
+                     std::vector<TrackBodiesSummary::InQuestion>& in_question) {
+  for (const Correction& one : tracker.corrections()) {
+    if (!(one.ambiguity > 0)) continue;
+    const auto& bodies = tracker.bodies();
+    const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& each) { return each.id == one.body; });
+    in_question.push_back({.body = body->label,
+                           .frame = settled.frame_at(one.since),
+                           .time = one.since,
+                           .probability = one.ambiguity,
+                           .turn = one.words});
+  }
 }
 
 TrackBodiesSummary summary_of(const solve::bodies::BodyTracker& tracker, const std::vector<double>& errors) {
@@ -153,14 +164,7 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
       if (pose.tracked) errors[static_cast<std::size_t>(number(pose.body)) - 1] += pose.residual_m.value_or(0);
     }
     settled.add(*std::move(instant), step.tracker().corrections());
-    for (const Correction& one : step.tracker().corrections()) {
-      if (one.ambiguity > 0)
-        in_question.push_back({.body = label_of(header.bodies, one.body),
-                               .frame = settled.frame_at(one.since),
-                               .time = one.since,
-                               .probability = one.ambiguity,
-                               .turn = one.words});
-    }
+    add_in_question(step.tracker(), settled, in_question);
     stopped = hooks.report({.step = "following bodies", .done = ++instants, .total = reader->instant_count()}) == Continue::no;
     if (stopped) break;
   }

@@ -1,6 +1,7 @@
 // Which of the poses in which it appears the same a body has: the part of BodyTracker that decides late.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "marey/assign/no_index.h"
@@ -43,6 +44,30 @@ std::size_t inverse_of(std::span<const Symmetry> turns, std::size_t turn) {
     if (turn != 0 && both(turns, turn, other) == 0) return other;
   }
   return 0;
+}
+
+/// Of no turn, then of each: that the body is turned so against `rotation`.
+std::vector<double> probabilities(std::span<const Symmetry> turns, const DueRotation& due, const Matrix<3>& rotation) {
+  std::vector<double> of{likelihood(angle_between(due.rotation, rotation), due.variance)};
+  for (const Symmetry& turn : turns)
+    of.push_back(likelihood(angle_between(due.rotation, rotation * turn.body_from_body.rotation), due.variance));
+  const double sum = std::accumulate(of.begin(), of.end(), 0.0);
+  for (double& probability : of) probability /= sum;
+  return of;
+}
+
+/// By turn, that the body is turned so against the pose that is `best` after the gap. What was in question before the gap (`before`,
+/// by turn) still is: a turn from the pose then is one from the pose now.
+std::vector<double> combined(std::span<const Symmetry> turns, std::span<const double> before, std::span<const double> after,
+                             std::size_t best) {
+  std::vector<double> result(turns.size() + 1);
+  const std::size_t back_to_best = inverse_of(turns, best);
+  for (std::size_t then = 0; then <= turns.size(); ++then) {
+    const double was = then > 0 ? before[then - 1] : 1 - std::accumulate(before.begin(), before.end(), 0.0);
+    for (std::size_t now = 0; now <= turns.size(); ++now) result[both(turns, then, both(turns, now, back_to_best))] += was * after[now];
+  }
+  result.erase(result.begin());
+  return result;
 }
 
 }  // namespace
@@ -141,32 +166,16 @@ void BodyTracker::evaluate_return(int body, Timestamp now) {
   Return back = *std::exchange(one.back, std::nullopt);
   const std::span<const Symmetry> turns = one.rotations;
 
-  // By what carries it, if that is seen now, or by its own rates at both ends of the gap.
+  // By its own rates at both ends of the gap, or by what carries it, which may be seen only now.
   back.after.rate = one.motion->turning_rate;
   ObservedRotation seen = back.after;
   DueRotation due = one.hidden->due(back.before, back.after);
   const ObservedRotation seen_now = observed_rotation(body, now);
   if (const DueRotation later = one.hidden->due(back.before, seen_now); later.variance < due.variance) due = later, seen = seen_now;
-  std::vector<double> after{likelihood(angle_between(due.rotation, seen.rotation), due.variance)};
-  for (const Symmetry& turn : turns)
-    after.push_back(likelihood(angle_between(due.rotation, seen.rotation * turn.body_from_body.rotation), due.variance));
-  double sum = 0;
-  for (const double probability : after) sum += probability;
-  for (double& probability : after) probability /= sum;
+  const std::vector<double> after = probabilities(turns, due, seen.rotation);
   const auto best = static_cast<std::size_t>(std::max_element(after.begin(), after.end()) - after.begin());
-
-  // What was in question before the gap still is: a turn from the pose then is one from the pose now.
-  std::vector<double> turned(turns.size() + 1);
-  const std::size_t back_to_best = inverse_of(turns, best);
-  for (std::size_t before = 0; before <= turns.size(); ++before) {
-    double was = 1;
-    for (const double probability : one.rotated) was -= before == 0 ? probability : 0;
-    if (before > 0) was = one.rotated[before - 1];
-    for (std::size_t now_turned = 0; now_turned <= turns.size(); ++now_turned)
-      turned[both(turns, before, both(turns, now_turned, back_to_best))] += was * after[now_turned];
-  }
   const bool was_in_question = other_of(one, {}).has_value();
-  std::copy(turned.begin() + 1, turned.end(), one.rotated.begin());
+  one.rotated = combined(turns, one.rotated, after, best);
 
   Correction found{.body = bodies_[static_cast<std::size_t>(body)].id,
                    .since = back.after.time,
@@ -174,6 +183,7 @@ void BodyTracker::evaluate_return(int body, Timestamp now) {
                    .other = other_of(one, {}),
                    .ambiguity = 0,
                    .words = {}};
+  const std::size_t back_to_best = inverse_of(turns, best);
   for (std::size_t turn = 0; turn <= turns.size(); ++turn) {
     const std::size_t against = both(turns, turn, back_to_best);
     if (against == 0 || turns[against - 1].worst > noise_ || after[turn] < kInQuestion || after[turn] <= found.ambiguity) continue;
