@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`marey body tracking` on the true paths of BROAD (rigid_bodies/broad), with simulated markers hung on them.
 
-Usage: bodies.py MAREY DATA [--seconds 20] [--sigma 0.2] [--missing 0.05] [--seed 1] [--work FOLDER]
+Usage: bodies.py MAREY DATA [--seconds 20] [--sigma 0.2] [--missing 0.05] [--seed 1] [--every 1] [--work FOLDER]
 
 DATA is the folder that tests call MAREY_DATA. Needs numpy and scipy (PyPI, or Debian's python3-scipy), which reads MATLAB's files. Printed:
   noise      RMS error of the pose where three markers or more are seen, against the Cramer-Rao bound of those very markers
@@ -177,12 +177,15 @@ def main():
     parser.add_argument("--sigma", type=float, default=0.2, help="mm")
     parser.add_argument("--missing", type=float, default=0.05)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--every", type=int, default=1, help="of so many instants one is used: 286 Hz divided by that")
     parser.add_argument("--work", type=pathlib.Path)
     options = parser.parse_args()
     work = options.work or pathlib.Path(tempfile.mkdtemp(prefix="marey_bodies_"))
     random = np.random.default_rng(options.seed)
     sigma = options.sigma / 1000
-    stretches = list(paths(options.data, options.seconds))
+    stretches = [(name, position[::options.every], rotation[::options.every]) for name, position, rotation in paths(options.data, options.seconds)]
+    global RATE
+    RATE /= options.every
     for name, position, rotation in stretches:
         turn, bound_turn, shift, bound_shift, flips, losses, count = noise(options.marey, work, position, rotation, sigma, options.missing, random)
         print(f"{name}: turn {np.degrees(turn):.4f} deg, bound {np.degrees(bound_turn):.4f}, ratio {turn / bound_turn:.3f}; "

@@ -66,8 +66,10 @@ struct TrackCounts {
 class BodyTracker {
  public:
   // After this time a turning rate is known again, and a return is decided.
-  static constexpr int kSettled = 8;         ///< instants
-  static constexpr double kSettledS = 0.04;  ///< s, at least
+  static constexpr int kSettled = 8;              ///< instants
+  static constexpr double kSettledS = 0.04;       ///< s, at least
+  static constexpr int kSlowlySettled = 4;        ///< instants, at few a second,
+  static constexpr double kSlowlySettledS = 0.2;  ///< and s
 
   /// Throws Error for a body with fewer than three markers, or with all in a line.
   BodyTracker(std::vector<Body> bodies, const TrackingOptions& options = {});

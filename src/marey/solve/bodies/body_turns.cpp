@@ -56,15 +56,16 @@ std::vector<double> probabilities(std::span<const Symmetry> turns, const DueRota
   return of;
 }
 
-/// By turn, that the body is turned so against the pose that is `best` after the gap. What was in question before the gap (`before`,
-/// by turn) still is: a turn from the pose then is one from the pose now.
+/// By turn, that the body is turned so against the pose that is `best` after the gap. What was in question before the gap
+/// (`before`, by turn) still is: a turn from the pose then is one from the pose now.
 std::vector<double> combined(std::span<const Symmetry> turns, std::span<const double> before, std::span<const double> after,
                              std::size_t best) {
   std::vector<double> result(turns.size() + 1);
   const std::size_t back_to_best = inverse_of(turns, best);
   for (std::size_t then = 0; then <= turns.size(); ++then) {
     const double was = then > 0 ? before[then - 1] : 1 - std::accumulate(before.begin(), before.end(), 0.0);
-    for (std::size_t now = 0; now <= turns.size(); ++now) result[both(turns, then, both(turns, now, back_to_best))] += was * after[now];
+    for (std::size_t now = 0; now <= turns.size(); ++now)
+      result[both(turns, then, both(turns, now, back_to_best))] += was * after[now];
   }
   result.erase(result.begin());
   return result;
@@ -162,7 +163,11 @@ std::optional<OtherPose> BodyTracker::other_of(const Tracked& one, const Rigid3&
 /// Now that the turning rate is known after the gap too: how probable is each of the poses?
 void BodyTracker::evaluate_return(int body, Timestamp now) {
   Tracked& one = tracked_[static_cast<std::size_t>(body)];
-  if (!one.back || ++one.back->detected < kSettled || seconds(now - one.back->after.time) < kSettledS) return;
+  if (!one.back) return;
+  const int detected = ++one.back->detected;
+  const double since_s = seconds(now - one.back->after.time);
+  const bool settled = (detected >= kSettled && since_s >= kSettledS) || (detected >= kSlowlySettled && since_s >= kSlowlySettledS);
+  if (!settled) return;
   Return back = *std::exchange(one.back, std::nullopt);
   const std::span<const Symmetry> turns = one.rotations;
 
