@@ -177,7 +177,7 @@ def main():
     parser.add_argument("--sigma", type=float, default=0.2, help="mm")
     parser.add_argument("--missing", type=float, default=0.05)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--every", type=int, default=1, help="of so many instants one is used: 286 Hz divided by that")
+    parser.add_argument("--every", type=int, default=1, help="use every Nth instant: 286 Hz divided by N")
     parser.add_argument("--work", type=pathlib.Path)
     options = parser.parse_args()
     work = options.work or pathlib.Path(tempfile.mkdtemp(prefix="marey_bodies_"))
