@@ -12,7 +12,7 @@ std::span<const Track<2>> IndependentTracker::step(Timestamp now, std::span<cons
   if (targets_.empty()) {
     for (int i = 0; i < std::ssize(detected); ++i) targets_.push_back({{options_, detected[i].value, *detected[i].covariance}, i});
   } else {
-    for (Target& target : targets_) run_tracker(target, seconds_to(now), detected);
+    for (Target& target : targets_) step_target(target, seconds_to(now), detected);
   }
   now_ = now;
   return report(targets_);
@@ -27,7 +27,7 @@ std::span<const Track<2>> IndependentTracker::expected(Timestamp now) {
   return report(ahead);
 }
 
-void IndependentTracker::run_tracker(Target& target, double dt, std::span<const Observation<2>> detected) {
+void IndependentTracker::step_target(Target& target, double dt, std::span<const Observation<2>> detected) {
   target.filter.predict(dt);
   const Observation<2>* nearest = nullptr;
   double minimum = std::numeric_limits<double>::infinity();

@@ -30,7 +30,7 @@ class IndependentTracker final : public track::ImmediateTracker<2> {
     std::optional<int> observation = {};
   };
 
-  static void run_tracker(Target& target, double dt, std::span<const Observation<2>> detected);
+  static void step_target(Target& target, double dt, std::span<const Observation<2>> detected);
   std::span<const Track<2>> report(std::span<const Target> targets);
 
   filter::FilterOptions options_;

@@ -39,7 +39,7 @@ std::string frames_of(const std::vector<LabelledBox>& boxes) {
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> review_items(const EvaluateOptions& options, const format::tracks::MotTable& truth,
+std::vector<std::string> warnings_of(const EvaluateOptions& options, const format::tracks::MotTable& truth,
                                       const format::tracks::MotTable& tracks, const evaluate::Evaluation& result) {
   std::vector<std::string> sentences = truth.warnings;
   sentences.insert(sentences.end(), tracks.warnings.begin(), tracks.warnings.end());
@@ -168,7 +168,7 @@ void run(const EvaluateOptions& options) {
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
   const format::tracks::MotTable tracks = format::tracks::read_boxes(options.tracks, format::tracks::MotKind::tracks);
   const evaluate::Evaluation result = evaluate::evaluate(truth.boxes, tracks.boxes, options.iou);
-  const std::vector<std::string> warnings = review_items(options, truth, tracks, result);
+  const std::vector<std::string> warnings = warnings_of(options, truth, tracks, result);
   warn(warnings);
   if (options.json) {
     print(as_json(result, options.iou, warnings));

@@ -41,8 +41,8 @@ std::optional<double> fraction_false(const evaluate::ClearScores& clear) {
 }
 
 Json people_json(const pipeline::take::MatchEvaluation& judgement) {
-  std::map<int, pipeline::take::PathLengths> methods;
-  for (const pipeline::take::PathLengths& method : judgement.methods) methods[method.id] = method;
+  std::map<int, pipeline::take::PathLengths> lengths;
+  for (const pipeline::take::PathLengths& one : judgement.path_lengths) lengths[one.id] = one;
   Json people = Json::array();
   for (const evaluate::TargetFate& person : judgement.evaluation.people) {
     Json entry{{"id", person.id},
@@ -53,9 +53,9 @@ Json people_json(const pipeline::take::MatchEvaluation& judgement) {
                {"switches", person.switches},
                {"tracked_fraction", person.kept()}};
     if (person.track) entry["track"] = *person.track;
-    if (const auto method = methods.find(person.id); method != methods.end()) {
-      entry["true_distance_m"] = method->second.true_m;
-      entry["track_distance_m"] = method->second.track_m;
+    if (const auto one = lengths.find(person.id); one != lengths.end()) {
+      entry["true_distance_m"] = one->second.true_m;
+      entry["track_distance_m"] = one->second.track_m;
     }
     people.push_back(std::move(entry));
   }
@@ -121,7 +121,7 @@ void print_table(const pipeline::take::MatchEvaluation& judgement, double distan
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> review_items(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
+std::vector<std::string> warnings_of(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
                                       const Recording& tracks, const pipeline::take::MatchEvaluation& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
   const bool truth_is_empty = truth.samples() == 0, tracks_are_empty = tracks.samples() == 0;
@@ -156,7 +156,7 @@ void evaluate_positions(const std::string& truth_name, const std::string& tracks
   as_tracks.rate_hz = tracks.header.rate_hz;
   const Recording truth = positions_in(truth_name, as_tracks);
   const pipeline::take::MatchEvaluation judgement = pipeline::take::evaluate_match(truth, tracks, distance);
-  const std::vector<std::string> warnings = review_items(truth_name, tracks_name, truth, tracks, judgement);
+  const std::vector<std::string> warnings = warnings_of(truth_name, tracks_name, truth, tracks, judgement);
   warn(warnings);
   if (json) {
     print(as_json(judgement, distance, warnings));

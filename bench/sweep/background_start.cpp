@@ -24,8 +24,8 @@ constexpr int kSeconds = 60;
 constexpr int kMaxFrames = kSeconds * SmallScene::kRate;
 
 std::vector<Figure> passers(int frame) {
-  const int method = 3 * frame;
-  return {{method % 420 - 50, 120}, {330 - (method + 150) % 430, 180}};
+  const int x = 3 * frame;
+  return {{x % 420 - 50, 120}, {330 - (x + 150) % 430, 180}};
 }
 
 /// One stands from the start and goes to another place after 20 s; one comes in after 15 s, and stands before the shelves.

@@ -195,18 +195,18 @@ struct Score {
   }
 };
 
-Score score_of(const Spots& spots, const std::vector<std::optional<BallState>>& method) {
+Score score_of(const Spots& spots, const std::vector<std::optional<BallState>>& states) {
   Score score;
   const std::size_t cameras = spots.cameras.size();
-  for (std::size_t i = 0; i < method.size(); ++i) {
-    score.reported += method[i] ? 1 : 0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    score.reported += states[i] ? 1 : 0;
     const auto& location = spots.truth.locations[i];
     score.playing += location ? 1 : 0;
-    if (location && method[i]) score.off.push_back((method[i]->belief.location() - *location).norm());
+    if (location && states[i]) score.off.push_back((states[i]->belief.location() - *location).norm());
     for (std::size_t c = 0; c < cameras; ++c) {
       const auto& truth = spots.truth.images[i * cameras + c];
-      const bool states = method[i] && (method[i]->cameras & mask_of(CameraId{static_cast<int>(c)})) != 0;
-      const auto at = states ? spots.cameras[c].camera()->project(method[i]->belief.location()) : std::nullopt;
+      const bool states = states[i] && (states[i]->cameras & mask_of(CameraId{static_cast<int>(c)})) != 0;
+      const auto at = states ? spots.cameras[c].camera()->project(states[i]->belief.location()) : std::nullopt;
       constexpr double kNear = 4;  // px
       const bool hit = at && truth && truth->visible > 0 && (*at - truth->pixel).norm() <= kNear;
       score.hits += hit ? 1 : 0;

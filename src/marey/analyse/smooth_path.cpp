@@ -229,8 +229,8 @@ std::vector<Path> pieces_of(std::span<const Row> rows, const std::vector<bool>& 
 }
 
 /// A place that was not measured is known no better than the measured ones before and after it.
-void ambiguity_unmeasured(std::vector<Row>& rows) {
-  const auto review_item = [](auto from, auto to) {
+void widen_unmeasured(std::vector<Row>& rows) {
+  const auto raise_unmeasured = [](auto from, auto to) {
     const Row* last = nullptr;
     for (auto row = from; row != to; ++row) {
       if (row->measured) last = &*row;
@@ -238,8 +238,8 @@ void ambiguity_unmeasured(std::vector<Row>& rows) {
         row->covariance = last->covariance;
     }
   };
-  review_item(rows.begin(), rows.end());
-  review_item(rows.rbegin(), rows.rend());
+  raise_unmeasured(rows.begin(), rows.end());
+  raise_unmeasured(rows.rbegin(), rows.rend());
 }
 
 /// Puts rows that were not measured straight between those that were, and omits those before the first and after the last:
@@ -298,7 +298,7 @@ PersonPaths paths_of(const Recording& recording, const TrackColumns& track, cons
   }
   PersonPaths person;
   person.measured = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.measured; });
-  ambiguity_unmeasured(rows);
+  widen_unmeasured(rows);
   if (!smoothed) bridge_unmeasured(rows);
   std::vector<bool> cut;
   person.impossible = leave_impossible_out(rows, cut);

@@ -80,43 +80,43 @@ void TrajectoryPlot::add(const Instant& instant) {
   names_.add(instant.named);
   for (const Sample& sample : instant.samples) {
     const Vector<2> location = sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
-    Trajectory& method = methods_[sample.track];
-    if (method.pieces.empty() || method.last_frame + 1 != instant.index) {
-      if (!method.pieces.empty() && method.pieces.back().back() != method.last) method.pieces.back().push_back(method.last);
-      method.pieces.push_back({location});
-      method.name = names_.shown(sample.track);
-    } else if ((location - method.pieces.back().back()).norm() >= kMinLength) {
-      method.pieces.back().push_back(location);
+    Trajectory& trajectory = trajectories_[sample.track];
+    if (trajectory.pieces.empty() || trajectory.last_frame + 1 != instant.index) {
+      if (!trajectory.pieces.empty() && trajectory.pieces.back().back() != trajectory.last) trajectory.pieces.back().push_back(trajectory.last);
+      trajectory.pieces.push_back({location});
+      trajectory.name = names_.shown(sample.track);
+    } else if ((location - trajectory.pieces.back().back()).norm() >= kMinLength) {
+      trajectory.pieces.back().push_back(location);
     }
-    method.last = location;
-    method.last_frame = instant.index;
+    trajectory.last = location;
+    trajectory.last_frame = instant.index;
   }
 }
 
 std::string TrajectoryPlot::to_svg(const std::string& title) const {
   Vector<2> low(HUGE_VAL, HUGE_VAL), high(-HUGE_VAL, -HUGE_VAL);
-  for (const auto& [id, method] : methods_) {
-    for (const auto& piece : method.pieces) {
+  for (const auto& [id, trajectory] : trajectories_) {
+    for (const auto& piece : trajectory.pieces) {
       for (const Vector<2>& location : piece) {
         low = low.cwiseMin(location);
         high = high.cwiseMax(location);
       }
     }
   }
-  if (methods_.empty()) low = high = Vector<2>::Zero();
+  if (trajectories_.empty()) low = high = Vector<2>::Zero();
   PlotPage page(window_of(low, high));
   page.axes(title);
-  for (const auto& [id, method] : methods_) {
+  for (const auto& [id, trajectory] : trajectories_) {
     const std::string colour = css(colour_of(number(id)));
-    for (std::size_t i = 0; i < method.pieces.size(); ++i) {
+    for (std::size_t i = 0; i < trajectory.pieces.size(); ++i) {
       std::vector<Vector<2>> points;
-      for (const Vector<2>& pixel : method.pieces[i]) points.push_back(page.location(pixel));
-      if (i + 1 == method.pieces.size() && method.pieces[i].back() != method.last) points.push_back(page.location(method.last));
+      for (const Vector<2>& pixel : trajectory.pieces[i]) points.push_back(page.location(pixel));
+      if (i + 1 == trajectory.pieces.size() && trajectory.pieces[i].back() != trajectory.last) points.push_back(page.location(trajectory.last));
       page.polyline(points, {{"stroke", colour}, {"stroke-width", 1.6}, {"stroke-linejoin", "round"}});
     }
-    const Vector<2> begin = page.location(method.pieces.front().front());
+    const Vector<2> begin = page.location(trajectory.pieces.front().front());
     page.circle(begin, 3, {{"fill", colour}});
-    page.text(begin + Vector<2>(5, -4), method.name, {{"fill", colour}});
+    page.text(begin + Vector<2>(5, -4), trajectory.name, {{"fill", colour}});
   }
   return page.str();
 }

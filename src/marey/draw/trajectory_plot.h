@@ -30,7 +30,7 @@ class TrajectoryPlot {
     Vector<2> last = Vector<2>::Zero();  // seen, if not drawn yet
     std::int64_t last_frame = 0;
   };
-  std::map<TrackId, Trajectory> methods_;
+  std::map<TrackId, Trajectory> trajectories_;
   TrackNames names_;
 };
 

@@ -84,19 +84,19 @@ typename CoordinatedTurn<D>::State CoordinatedTurn<D>::move(const State& x, doub
   const Vector<3> angle = rate * dt;
   const Coefficients c = coefficients(angle.squaredNorm());
   const Rotated velocity = rotated(v, angle, c.A, c.B, c.dA, c.dB);
-  const Rotated method = rotated(v, angle, c.B, c.C, c.dB, c.dC);
+  const Rotated displacement = rotated(v, angle, c.B, c.C, c.dB, c.dC);
   const double fade = fading(dt, noise);
 
   State moved;
-  moved.template head<D>() = x.template head<D>() + dt * method.value.template head<D>();
+  moved.template head<D>() = x.template head<D>() + dt * displacement.value.template head<D>();
   moved.template segment<D>(D) = velocity.value.template head<D>();
   moved.template tail<kTurn>() = fade * x.template tail<kTurn>();
   if (jacobian != nullptr) {
     Square& F = *jacobian;
     F.setIdentity();
-    F.template block<D, D>(0, D) = dt * method.by_v.template topLeftCorner<D, D>();
+    F.template block<D, D>(0, D) = dt * displacement.by_v.template topLeftCorner<D, D>();
     F.template block<D, D>(D, D) = velocity.by_v.template topLeftCorner<D, D>();
-    F.template block<D, kTurn>(0, 2 * D) = dt * dt * method.by_angle.template topRightCorner<D, kTurn>();
+    F.template block<D, kTurn>(0, 2 * D) = dt * dt * displacement.by_angle.template topRightCorner<D, kTurn>();
     F.template block<D, kTurn>(D, 2 * D) = dt * velocity.by_angle.template topRightCorner<D, kTurn>();
     F.template bottomRightCorner<kTurn, kTurn>().diagonal().setConstant(fade);
   }

@@ -53,12 +53,12 @@ class HumanEvaluate {
   /// Whether no person is as fast from one place to the next, where too few are near to lay a parabola through them.
   bool jumps(std::size_t a, std::size_t b) const {
     if (time(b) - time(a) <= options_.reach / 2) return false;
-    const Vector<2> method = locations_[b].location - locations_[a].location;
-    const double length = method.norm();
+    const Vector<2> displacement = locations_[b].location - locations_[a].location;
+    const double length = displacement.norm();
     const double far = options_.limits.speed * (time(b) - time(a));
     if (length <= far) return false;
     const Matrix<2> both = locations_[a].covariance + locations_[b].covariance;
-    return length - far > options_.sigmas * std::sqrt(method.dot(both * method)) / length;
+    return length - far > options_.sigmas * std::sqrt(displacement.dot(both * displacement)) / length;
   }
 
   /// The parabola at time `at` through the places of a segment of time; nothing if they are too few or lie to one side.
@@ -107,15 +107,15 @@ class HumanEvaluate {
     const auto before = motion_at(begin, begin - span, begin, 3), after = motion_at(end, end, end + span, 3);
     if (!before || !after) return true;
     const double T = end - begin;
-    const Vector<2> method = after->location - before->location;
-    const Vector<2> first = 6 * method / (T * T) - (4 * before->velocity + 2 * after->velocity) / T;
-    const Vector<2> last = -6 * method / (T * T) + (2 * before->velocity + 4 * after->velocity) / T;
+    const Vector<2> displacement = after->location - before->location;
+    const Vector<2> first = 6 * displacement / (T * T) - (4 * before->velocity + 2 * after->velocity) / T;
+    const Vector<2> last = -6 * displacement / (T * T) + (2 * before->velocity + 4 * after->velocity) / T;
     const Matrix<2> locations = before->covariance.topLeftCorner<2, 2>() + after->covariance.topLeftCorner<2, 2>();
     const Matrix<2> speeds = before->covariance.block<2, 2>(2, 2) + after->covariance.block<2, 2>(2, 2);
     const double unsure = std::sqrt(36 * locations.trace() / 2 / std::pow(T, 4) + 10 * speeds.trace() / 2 / (T * T));
     const double needed = kBangBang * std::max(first.norm(), last.norm());
     return needed - kBangBang * options_.sigmas * unsure <= options_.limits.acceleration &&
-           method.norm() <= options_.limits.speed * T + options_.sigmas * std::sqrt(locations.trace());
+           displacement.norm() <= options_.limits.speed * T + options_.sigmas * std::sqrt(locations.trace());
   }
 
   std::span<const TimedPosition> locations_;

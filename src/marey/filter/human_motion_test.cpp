@@ -10,14 +10,14 @@ namespace marey::filter {
 namespace {
 
 /// Places at a rate, each `sigma` m off, on a path; the same errors for the same seed.
-std::vector<TimedPosition> locations(double rate, double seconds, double sigma, const std::function<Vector<2>(double)>& method,
+std::vector<TimedPosition> locations(double rate, double seconds, double sigma, const std::function<Vector<2>(double)>& path,
                                      std::uint64_t seed = 3) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> off;
   std::vector<TimedPosition> all;
   for (int i = 0; i <= rate * seconds; ++i) {
     const double dx = sigma * off(engine), dy = sigma * off(engine);
-    all.push_back({i / rate, method(i / rate) + Vector<2>(dx, dy), sigma * sigma * Matrix<2>::Identity()});
+    all.push_back({i / rate, path(i / rate) + Vector<2>(dx, dy), sigma * sigma * Matrix<2>::Identity()});
   }
   return all;
 }

@@ -139,11 +139,11 @@ class CycleMeasure {
 
   /// Ahead, and aside, of the other foot's last place at this foot's next strike.
   std::optional<Vector<2>> step(const GaitCycles::Cycle& cycle) const {
-    const auto method = stride(cycle), at = heel(cycle.side, cycle.end_s);
+    const auto advance = stride(cycle), at = heel(cycle.side, cycle.end_s);
     const auto strike = other_strike(cycle);
     const auto there = strike ? heel(cycle.side == Side::left ? Side::right : Side::left, cycle.end_s) : std::nullopt;
-    if (!method || !at || !there || method->norm() < 1e-6) return std::nullopt;
-    const Vector<2> ahead = method->normalized(), between = *at - *there;
+    if (!advance || !at || !there || advance->norm() < 1e-6) return std::nullopt;
+    const Vector<2> ahead = advance->normalized(), between = *at - *there;
     return Vector<2>(ahead.dot(between), std::abs(ahead.x() * between.y() - ahead.y() * between.x()));
   }
 

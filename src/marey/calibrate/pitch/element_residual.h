@@ -92,11 +92,11 @@ Eigen::Matrix<T, 2, 1> off(const geometry::StraightElement& line, const ElementF
   const V3 a = frame.detected(from), b = frame.detected(V3(from + along));
   const V3 n = a.cross(b);
   const T length = sqrt(n.x() * n.x() + n.y() * n.y() + T(1e-30));
-  const Eigen::Matrix<T, 2, 1> method(-n.y() / length, n.x() / length);
+  const Eigen::Matrix<T, 2, 1> direction(-n.y() / length, n.x() / length);
   // The place on the line that is seen beside the point: (a + t d), d = b − a.
   const V3 d = b - a;
-  const T over = method.x() * (a.x() - at.x() * a.z()) + method.y() * (a.y() - at.y() * a.z());
-  const T under = method.x() * (d.x() - at.x() * d.z()) + method.y() * (d.y() - at.y() * d.z());
+  const T over = direction.x() * (a.x() - at.x() * a.z()) + direction.y() * (a.y() - at.y() * a.z());
+  const T under = direction.x() * (d.x() - at.x() * d.z()) + direction.y() * (d.y() - at.y() * d.z());
   const T t = -over / under;
   if (!(t > T(0))) return to_position(frame, from, at);
   if (t > T(1)) return to_position(frame, V3(from + along), at);

@@ -17,7 +17,7 @@ bool inside(const Vector<2>& pixel, cv::Size size) {
 
 /// Where the line from `in` to `out` leaves the image.
 Vector<2> leaving(const Vector<2>& in, const Vector<2>& out, cv::Size size) {
-  const Vector<2> method = out - in, last(size.width - 1, size.height - 1);
+  const Vector<2> direction = out - in, last(size.width - 1, size.height - 1);
   double t = 1;
   for (int axis = 0; axis < 2; ++axis) {
     if (method(axis) > 0) t = std::min(t, std::max(0.0, last(axis) - in(axis)) / method(axis));
@@ -49,7 +49,7 @@ Polyline projected(const geometry::Camera& camera, const geometry::PitchElement&
 double distance(const Vector<2>& point, const Polyline& line) {
   double nearest = (point - line[0]).norm();
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vector<2> method = line[i] - line[i - 1];
+    const Vector<2> segment = line[i] - line[i - 1];
     const double t = method.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(method) / method.squaredNorm(), 0.0, 1.0) : 0;
     nearest = std::min(nearest, (point - line[i - 1] - t * method).norm());
   }

@@ -105,8 +105,8 @@ TEST(PitchCamera, SightingsOfLinesPullTheCameraRight) {
     const auto here = truth.project({ground.x(), ground.y(), 0});
     const auto there = truth.project({ground.x() + along.x(), ground.y() + along.y(), 0});
     if (!here || !there || !truth.in_image(*here)) return;
-    const Vector<2> method = (*there - *here).normalized();
-    sightings.push_back({ground, *here, {-method.y(), method.x()}, 20, 0.35, line});
+    const Vector<2> direction = (*there - *here).normalized();
+    sightings.push_back({ground, *here, {-direction.y(), direction.x()}, 20, 0.35, line});
   };
   for (double t = 0; t <= 1; t += 0.01) {
     add({105 * t, 0}, {0.01, 0}, 0);

@@ -47,7 +47,7 @@ struct Sample {
 std::optional<Sample> sample_at(const GroundView& view, const Vector<2>& ground, const Vector<2>& tangent, double margin) {
   const Camera& camera = *view.camera();
   const Vector<2> slope = view.surface().slope(ground);
-  const auto on_ground = [&](const Vector<2>& method) { return Vector<3>(method.x(), method.y(), slope.dot(method)); };
+  const auto on_ground = [&](const Vector<2>& direction) { return Vector<3>(direction.x(), direction.y(), slope.dot(direction)); };
   const auto detected = camera.project_with_jacobian({ground.x(), ground.y(), view.surface().height(ground)});
   if (!detected) return std::nullopt;
   const Vector<2> inside = Vector<2>(camera.size().width - 1 - margin, camera.size().height - 1 - margin);

@@ -57,7 +57,7 @@ void Odometry::refer(const geometry::Tripod& tripod, const geometry::Heading& he
 }
 
 /// The corners in the new image; those that cannot be followed are dropped.
-std::vector<Odometry::Match> Odometry::run_tracker() {
+std::vector<Odometry::Match> Odometry::track_corners() {
   std::vector<Match> matches;
   if (corners_.empty()) return matches;
   std::vector<unsigned char> found;
@@ -180,7 +180,7 @@ std::optional<Rotated> Odometry::step(const cv::Mat& luma, const geometry::Tripo
     refer(tripod, last);
     return std::nullopt;
   }
-  const std::vector<Match> matches = run_tracker();
+  const std::vector<Match> matches = track_corners();
   const auto rotated = fit(reference_tripod_, matches);
   standing_.clear();
   for (std::size_t i = 0; rotated && rotated->otherwise && i < matches.size(); ++i) {
@@ -192,9 +192,9 @@ std::optional<Rotated> Odometry::step(const cv::Mat& luma, const geometry::Tripo
   }
   ++age_;
   const geometry::Heading& chained = chains_.front();
-  const double method =
+  const double travelled =
       std::exp(chained.log_focal) / 2 * std::hypot(chained.pan - reference_heading_.pan, chained.tilt - reference_heading_.tilt);
-  const bool spent = age_ >= options_.longest || method > kMaxTrajectory ||
+  const bool spent = age_ >= options_.longest || travelled > kMaxTrajectory ||
                      std::abs(chained.log_focal - reference_heading_.log_focal) > kMaxZoom || 2 * corners_.size() < begun_with_ ||
                      rotated->agreeing < 3 * options_.lowest_count;
   if (spent) refer(tripod, geometry::Heading::of(last.as_vector() + rotated->by));

@@ -55,7 +55,7 @@ class Odometry {
     bool still = false;  // it has not moved on the image
   };
   void refer(const geometry::Tripod& tripod, const geometry::Heading& heading);
-  std::vector<Match> run_tracker();
+  std::vector<Match> track_corners();
   std::optional<Rotated> fit(const geometry::Tripod& tripod, const std::vector<Match>& matches);
 
   OdometryOptions options_;

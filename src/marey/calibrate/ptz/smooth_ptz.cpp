@@ -52,10 +52,10 @@ std::vector<Filtered> filtered(const std::vector<TurnRecord>& records, const geo
 
 Matrix<3> flow_covariance(const Rotated& rotated, double log_focal, const SmoothOptions& options) {
   const double angle = options.flow_px / 640 * std::exp(-log_focal), zoom = options.flow_zoom;
-  const Vector<3> method = options.moving_fraction * rotated.by;
+  const Vector<3> moving = options.moving_fraction * rotated.by;
   const double turned = options.moving_zoom * std::exp(log_focal) * rotated.by.head<2>().norm();
-  const Matrix<3> noise = Vector<3>(angle * angle + method.x() * method.x(), angle * angle + method.y() * method.y(),
-                                    zoom * zoom + method.z() * method.z() + turned * turned)
+  const Matrix<3> noise = Vector<3>(angle * angle + moving.x() * moving.x(), angle * angle + moving.y() * moving.y(),
+                                    zoom * zoom + moving.z() * moving.z() + turned * turned)
                               .asDiagonal();
   return noise + rotated.ambiguity * rotated.ambiguity.transpose();
 }

@@ -67,8 +67,8 @@ Score play(const BackgroundOptions& options, int frames, int from, const Play& n
 
 std::vector<Figure> walkers(int frame) {
   if (frame < 4 * kSecond) return {};
-  const int method = 3 * (frame - 4 * kSecond);
-  return {{method % 360 - 30, 120}, {300 - method % 360, 180}};
+  const int x = 3 * (frame - 4 * kSecond);
+  return {{x % 360 - 30, 120}, {300 - x % 360, 180}};
 }
 
 SceneFrame walking(SmallScene& scene, int frame) {

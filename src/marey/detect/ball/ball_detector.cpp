@@ -34,7 +34,7 @@ void BallDetector::prime(std::span<const Frame> samples) {
 }
 
 /// One level nearer to the frame, this often a second as the options say.
-void BallDetector::run_tracker(const cv::Mat& luma, Timestamp time) {
+void BallDetector::adapt_scene(const cv::Mat& luma, Timestamp time) {
   if (!tracked_) tracked_ = time;
   if (seconds(time - *tracked_) * options_.track_hz < 1) return;
   tracked_ = time;
@@ -54,7 +54,7 @@ std::vector<BallCandidate> BallDetector::detect(const Frame& frame) {
   cv::absdiff(luma, scene_, other);
   cv::threshold(other, other, options_.contrast, 1, cv::THRESH_BINARY);
   cv::integral(other, other_, CV_32S);
-  run_tracker(luma, frame.time);
+  adapt_scene(luma, frame.time);
   cv::threshold(added_, bright, options_.contrast, 255, cv::THRESH_BINARY);
   const int count = cv::connectedComponentsWithStats(bright, blobs, figures, centres, 8, CV_32S);
   std::vector<BallCandidate> found;

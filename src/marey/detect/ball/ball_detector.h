@@ -47,7 +47,7 @@ class BallDetector {
   std::vector<BallCandidate> detect(const Frame& frame);
 
  private:
-  void run_tracker(const cv::Mat& luma, Timestamp time);
+  void adapt_scene(const cv::Mat& luma, Timestamp time);
   std::optional<BallCandidate> assess(const cv::Mat& blobs, int blob, const cv::Rect& box) const;
   double local_clutter(const cv::Rect& box, double radius) const;
 

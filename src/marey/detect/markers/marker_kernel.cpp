@@ -264,7 +264,7 @@ constexpr float kFlat = 4.5f;  // blurs from the edge beyond which it is not fel
 struct Detected {
   Floats away_x, away_y, distance;  ///< px, from the disc's centre or the nearest of its segment
   Floats u;                         ///< blurs outside its edge
-  Floats method;                    ///< along the sweep: −1 at one end, 1 at the other
+  Floats along;                    ///< along the sweep: −1 at one end, 1 at the other
   Edge edge;
 };
 
@@ -287,9 +287,9 @@ struct Discs {
     if (swept) {
       Floats t = (detected.away_x * half_x + detected.away_y * half_y) * along;
       t = t < -1.0f ? Floats{} - 1.0f : t;
-      detected.method = t > 1.0f ? Floats{} + 1.0f : t;
-      detected.away_x -= detected.method * half_x;
-      detected.away_y -= detected.method * half_y;
+      detected.along = t > 1.0f ? Floats{} + 1.0f : t;
+      detected.away_x -= detected.along * half_x;
+      detected.away_y -= detected.along * half_y;
     }
     detected.distance = square_root(detected.away_x * detected.away_x + detected.away_y * detected.away_y + 1.0f / 12);
     detected.u = (detected.distance - at[2]) * inverse_blur;
@@ -325,8 +325,8 @@ struct Discs {
       slope[kFirstDisc + 3 * d + 2] = outwards;
       slope[kDiscsBlur] += outwards * detected[d].u;
       if (!swept) continue;
-      slope[n - 2] += detected[d].method * by_x;
-      slope[n - 1] += detected[d].method * by_y;
+      slope[n - 2] += detected[d].along * by_x;
+      slope[n - 1] += detected[d].along * by_y;
     }
   }
 };

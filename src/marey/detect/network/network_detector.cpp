@@ -30,8 +30,8 @@ Detection detection_of_find(const Candidate& one, cv::Size image) {
   detection.box = geometry::intersection({one.left, one.top, one.right - one.left, one.bottom - one.top},
                                          {0, 0, static_cast<double>(image.width), static_cast<double>(image.height)});
   const double across = 1 + 0.08 * detection.box.width, down = 1 + 0.04 * detection.box.height;
-  const double review_item = 1 / std::max(one.score, 0.2);
-  detection.covariance = Vector<2>(across * across * review_item, down * down * review_item).asDiagonal();
+  const double inflation = 1 / std::max(one.score, 0.2);
+  detection.covariance = Vector<2>(across * across * inflation, down * down * inflation).asDiagonal();
   detection.centre = detection.box.centre();
   detection.area = 0.6 * detection.box.area();
   detection.score = one.score;

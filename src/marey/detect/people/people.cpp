@@ -103,8 +103,8 @@ Detection detection_of(const Box& box, std::span<const PixelRun> runs, double sc
   Detection detection;
   detection.box = clipped(box, image);
   const double across = 1 + 0.08 * box.width, down = 1 + 0.04 * box.height;
-  const double review_item = 1 / std::max(score, 0.2);
-  detection.covariance = Vector<2>(across * across * review_item, down * down * review_item).asDiagonal();
+  const double inflation = 1 / std::max(score, 0.2);
+  detection.covariance = Vector<2>(across * across * inflation, down * down * inflation).asDiagonal();
   detection.score = score;
   std::vector<PixelRun> part = runs_within(runs, box);
   Vector<2> sum = Vector<2>::Zero();

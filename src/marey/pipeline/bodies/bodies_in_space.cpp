@@ -184,10 +184,10 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
 constexpr double kBends = 0.004;  // m; skin and cloth on a limb, and noise, stay below
 
 std::vector<std::string> review_items_of(const solve::bodies::DefinedBody& defined) {
-  std::vector<std::string> review_items;
+  std::vector<std::string> warnings;
   for (const auto& marker : defined.markers) {
     if (marker.loose)
-      review_items.push_back(
+      warnings.push_back(
           fmt::format("{} is loose: it varies by {:.1f} mm to the others, and is omitted", marker.label, 1000 * marker.deviation));
   }
   const solve::bodies::DefinedMarker* bends = nullptr;
@@ -195,20 +195,20 @@ std::vector<std::string> review_items_of(const solve::bodies::DefinedBody& defin
     if (!marker.loose && marker.deviation > kBends && (bends == nullptr || marker.deviation > bends->deviation)) bends = &marker;
   }
   if (bends != nullptr)
-    review_items.push_back(
+    warnings.push_back(
         fmt::format("{} varies by {:.1f} mm to the others: is this one rigid thing?", bends->label, 1000 * bends->deviation));
   if (!defined.symmetries.empty()) {
     const auto& first = defined.symmetries.front();
     const std::size_t others = defined.symmetries.size() - 1;
-    review_items.push_back(
+    warnings.push_back(
         fmt::format("{} it appears the same to {:.1f} mm{}: after it was hidden it may come back turned; move a marker",
                     words_of(first), 1000 * first.worst, others == 0 ? "" : fmt::format(" (and {} other ways)", others)));
   }
   if (defined.shortest_edge < 0.02)
-    review_items.push_back(
+    warnings.push_back(
         fmt::format("two of its markers are {:.0f} mm from each other; cameras distinguish them better from 20 mm on",
                     1000 * defined.shortest_edge));
-  return review_items;
+  return warnings;
 }
 
 solve::bodies::DefinedBody define_body(const std::string& recording, const std::string& out, bool add,

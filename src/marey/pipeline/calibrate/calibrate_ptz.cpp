@@ -112,7 +112,7 @@ void prepare(marey::calibrate::ptz::PtzTracker& tracker, const corridor::Feed& f
   }
 }
 
-marey::calibrate::ptz::PtzResult run_tracker(corridor::Feed& feed, const PtzRun& run, const PtzRunOptions& options,
+marey::calibrate::ptz::PtzResult track_camera(corridor::Feed& feed, const PtzRun& run, const PtzRunOptions& options,
                                              const Hooks& hooks) {
   marey::calibrate::ptz::PtzTracker tracker(run.clicked.tripod, feed.info().size, options.tracking);
   for (std::size_t i = 0; i < run.clicks.size(); ++i) {
@@ -295,7 +295,7 @@ PtzRun calibrate_ptz(const std::string& video, const std::string& clicks, const 
   else
     corner = start_with_clicks(run, feed, options, clicks);
   const auto begin = std::chrono::steady_clock::now();
-  run.result = run_tracker(feed, run, options, hooks);
+  run.result = track_camera(feed, run, options, hooks);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (run.searched) check_start(run, feed, options, video);
   check_result(run, video);

@@ -71,7 +71,7 @@ class LiveGrouping final : public FrameGrouping {
     }
     next_ = index + 1;
     forget_before(set.time);
-    run_tracker(set);
+    adjust_start(set);
     return set;
   }
 
@@ -107,7 +107,7 @@ class LiveGrouping final : public FrameGrouping {
 
   /// Cameras synchronised that are faster than they say, or slower, would slip from one instant into the next by and by, not all at
   /// the same time: the instants follow them.
-  void run_tracker(const FrameSet& set) {
+  void adjust_start(const FrameSet& set) {
     off_.clear();
     for (const auto& camera : set.cameras) {
       if (camera) off_.push_back(seconds(camera->frame.time - set.time));

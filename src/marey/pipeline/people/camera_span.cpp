@@ -29,20 +29,20 @@ void CameraSpan::observe_frame(Timestamp now, std::span<const Track<2>> tracks) 
 }
 
 void CameraSpan::compare(const std::map<TrackId, Location>& now) {
-  std::vector<Vector<2>> methods;
+  std::vector<Vector<2>> steps;
   double height = 0;
   for (const auto& [id, location] : now) {
     const auto before = before_.find(id);
     if (before == before_.end()) continue;
-    methods.push_back(location.location - before->second.location);
+    steps.push_back(location.location - before->second.location);
     height += location.height;
   }
-  if (methods.size() < kPeople) return;
-  const double n = static_cast<double>(methods.size());
+  if (steps.size() < kPeople) return;
+  const double n = static_cast<double>(steps.size());
   Vector<2> mean = Vector<2>::Zero();
-  for (const Vector<2>& method : methods) mean += method / n;
+  for (const Vector<2>& step : steps) mean += step / n;
   double spread = 0;  // of each axis
-  for (const Vector<2>& method : methods) spread += (method - mean).squaredNorm() / (2 * (n - 1));
+  for (const Vector<2>& step : steps) spread += (step - mean).squaredNorm() / (2 * (n - 1));
   const double minimum = kStanding * height / n;
   coherence_ += n * mean.squaredNorm() / (spread + minimum * minimum);
   farthest_ = std::max(farthest_, mean.norm());

@@ -25,7 +25,7 @@ namespace {
 class ImageStage : public corridor::Stage {
  public:
   ImageStage(const corridor::Feed& feed, const ImagePeopleOptions& options)
-      : options_(options), tracking_(feed, options), review_items_(feed.camera(), options.stabilise) {
+      : options_(options), tracking_(feed, options), image_ambiguities_(feed.camera(), options.stabilise) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
     header_.time_base.kind = TimeBase::Kind::rig;
@@ -47,7 +47,7 @@ class ImageStage : public corridor::Stage {
     corridor::NextTo next_to;
     watch(given.frame, next_to);
     const detect::Detections found = tracking_.detect(given);
-    if (tracking_.detector() != nullptr) review_items_.add(found);
+    if (tracking_.detector() != nullptr) image_ambiguities_.add(found);
     if (!found.searched) {
       next_to.wait();
       return unsearched(given.frame);
@@ -60,7 +60,7 @@ class ImageStage : public corridor::Stage {
   }
 
   std::vector<std::string> news() override {
-    return tracking_.detector() != nullptr ? review_items_.news() : std::vector<std::string>{};
+    return tracking_.detector() != nullptr ? image_ambiguities_.news() : std::vector<std::string>{};
   }
 
   void report(corridor::Summary& summary) const override {
@@ -92,19 +92,19 @@ class ImageStage : public corridor::Stage {
   ImagePeopleOptions options_;
   RecordingHeader header_;
   ImageTracking tracking_;
-  ImageAmbiguities review_items_;
+  ImageAmbiguities image_ambiguities_;
   std::optional<StandingPeople> standing_;  // where a background model may have taken them for the scene
 
  private:
   /// What images show that does not depend on who is in them.
   void watch(const Frame& frame, corridor::NextTo& next_to) {
-    if (tracking_.detector() != nullptr) next_to.run([this, &frame] { review_items_.watch(frame); });
+    if (tracking_.detector() != nullptr) next_to.run([this, &frame] { image_ambiguities_.watch(frame); });
     if (standing_) next_to.run([this, &frame] { standing_->inspect(frame); });
   }
 
   void report_search(corridor::Summary& summary) const {
     if (tracking_.detector() == nullptr) return;
-    for (std::string& review_item : review_items_.warnings()) summary.warnings.push_back(std::move(review_item));
+    for (std::string& warning : image_ambiguities_.warnings()) summary.warnings.push_back(std::move(warning));
     const detect::DetectionCounts counts = tracking_.detector()->detection_counts();
     summary.dropped.noise = counts.noise;
     summary.dropped.unexplained_regions = counts.misfits;
@@ -202,7 +202,7 @@ class RecordedImage final : public ImageStage {
   void prime(const corridor::Feed& feed) {
     const std::vector<Frame> samples = feed.sample_beginning();
     corridor::NextTo next_to;
-    next_to.run([&] { review_items_.inspect_at_beginning(samples); });
+    next_to.run([&] { image_ambiguities_.inspect_at_beginning(samples); });
     tracking_.detector()->prime(samples);
     if (!samples.empty()) open_again_ = feed.opener();
     next_to.wait();

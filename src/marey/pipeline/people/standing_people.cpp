@@ -72,8 +72,8 @@ void StandingPeople::note_starters(const Frame& frame, std::span<const Track<2>>
 void StandingPeople::note_next(TrackId id, const Box& body, Timestamp now) {
   for (Starter& starter : starters_) {
     const Box next = at_position(body, starter.location);
-    const double method = (next.centre() - starter.body.centre()).norm();
-    if (seconds(now - starter.at) <= kNext && method < kNextWithin * starter.body.height &&
+    const double distance = (next.centre() - starter.body.centre()).norm();
+    if (seconds(now - starter.at) <= kNext && distance < kNextWithin * starter.body.height &&
         geometry::intersection(next, starter.body).empty())
       starter.left = id;
   }

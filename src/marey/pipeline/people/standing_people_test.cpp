@@ -39,21 +39,21 @@ PeopleVideoOptions small_video() {
 /// Boxes by frame, of one track or one person.
 using Trajectory = std::map<std::int64_t, Box>;
 
-class Methods final : public Sink {
+class Trajectories final : public Sink {
  public:
-  explicit Methods(std::map<TrackId, Trajectory>& methods) : methods_(methods) {}
+  explicit Trajectories(std::map<TrackId, Trajectory>& trajectories) : trajectories_(trajectories) {}
   std::string name() const override { return "ways"; }
   SinkRequirements begin(const RecordingHeader& /*header*/) override { return {}; }
   void write(const Instant& instant) override {
-    for (const Sample& sample : instant.samples) methods_[sample.track].emplace(instant.index, *sample.box);
+    for (const Sample& sample : instant.samples) trajectories_[sample.track].emplace(instant.index, *sample.box);
   }
   void finish() override {}
 
  private:
-  std::map<TrackId, Trajectory>& methods_;
+  std::map<TrackId, Trajectory>& trajectories_;
 };
 
-corridor::Summary track(const std::shared_ptr<const PeopleVideo>& video, bool live, std::map<TrackId, Trajectory>& methods) {
+corridor::Summary track(const std::shared_ptr<const PeopleVideo>& video, bool live, std::map<TrackId, Trajectory>& trajectories) {
   corridor::FeedOptions how;
   how.open = [&] { return marey::simulate::people::make_source(video); };
   how.opens_again = true;
@@ -65,7 +65,7 @@ corridor::Summary track(const std::shared_ptr<const PeopleVideo>& video, bool li
   options.live = live;
   const auto stage = people_in_image(feed, options);
   corridor::Sinks sinks;
-  sinks.add(std::make_unique<Methods>(methods));
+  sinks.add(std::make_unique<Trajectories>(trajectories));
   std::vector<corridor::Feed> feeds;
   feeds.push_back(std::move(feed));
   corridor::Clock clock(std::move(feeds));
@@ -93,9 +93,9 @@ std::map<int, Trajectory> standing_in(const PeopleVideo& video) {
 /// The largest share of a person's trajectory that one track lies on.
 double tracked(const Trajectory& person, const std::map<TrackId, Trajectory>& tracks) {
   std::size_t maximum = 0;
-  for (const auto& [id, method] : tracks) {
+  for (const auto& [id, trajectory] : tracks) {
     maximum = std::max(maximum,
-                       static_cast<std::size_t>(std::count_if(person.begin(), person.end(), [&, &track = method](const auto& at) {
+                       static_cast<std::size_t>(std::count_if(person.begin(), person.end(), [&, &track = trajectory](const auto& at) {
                          const auto found = track.find(at.first);
                          return found != track.end() && geometry::iou(found->second, at.second) > 0.5;
                        })));
@@ -109,9 +109,9 @@ TEST(StandingPeople, AreTrackedFromTheFirstFrameOnOnceTheyHaveWalkedOff) {
     const auto video = video_standing(seed, small_video());
     std::map<TrackId, Trajectory> tracks;
     const corridor::Summary summary = track(video, false, tracks);
-    for (const auto& [id, method] : standing_in(*video)) {
+    for (const auto& [id, trajectory] : standing_in(*video)) {
       ++people;
-      added += tracked(method, tracks) > 0.9;
+      added += tracked(trajectory, tracks) > 0.9;
     }
     EXPECT_EQ(summary.notes.size(), 1U);
   }

@@ -38,7 +38,7 @@ class NamesThen {
                        tracks.size() > kMaxCount ? fmt::format(" and {} more", tracks.size() - kMaxCount) : "");
   }
   /// What it did to names counts for the edits behind it.
-  void run_tracker(const Operation& operation) {
+  void apply(const Operation& operation) {
     if (operation.kind == Operation::Kind::rename) names_[operation.tracks[0]] = operation.label;
     if (operation.kind == Operation::Kind::split) names_[*operation.initiated] = operation.label;
   }
@@ -109,11 +109,11 @@ class NamesOnBranches {
     std::vector<const DoneEdit*> branch;
     for (auto id = done.edit.parent; id && by_id_.contains(*id) && branch.size() < by_id_.size(); id = by_id_[*id]->edit.parent)
       branch.push_back(by_id_[*id]);
-    for (auto one = branch.rbegin(); one != branch.rend(); ++one) run_tracker(**one);
+    for (auto one = branch.rbegin(); one != branch.rend(); ++one) apply(**one);
     return names_;
   }
-  void run_tracker(const DoneEdit& done) {
-    if (done.operation) names_.run_tracker(*done.operation);
+  void apply(const DoneEdit& done) {
+    if (done.operation) names_.apply(*done.operation);
     last_ = done.edit.id;
   }
 
@@ -145,7 +145,7 @@ std::vector<EditLine> lines_of(const EditHistory& history) {
   for (const DoneEdit& done : history.edits) {
     lines.push_back(line_of(done, names.before(done)));
     lines.back().counts = counting.contains(done.edit.id);
-    names.run_tracker(done);
+    names.apply(done);
   }
   return lines;
 }

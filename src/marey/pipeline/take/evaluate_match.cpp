@@ -138,9 +138,9 @@ MatchEvaluation evaluate_match(const Recording& truth, const Recording& tracks, 
     for (std::size_t i = 0; i < pairing.truth.size(); ++i) {
       if (pairing.truth[i]) times[*pairing.truth[i]] = true_clock.time(i);
     }
-    judgement.methods = path_lengths(true_places, track_places, judgement.evaluation.people, times);
+    judgement.path_lengths = path_lengths(true_places, track_places, judgement.evaluation.people, times);
     double error = 0, length = 0;
-    for (const PathLengths& method : judgement.methods) error += std::abs(method.track_m - method.true_m), length += method.true_m;
+    for (const PathLengths& path : judgement.path_lengths) error += std::abs(path.track_m - path.true_m), length += path.true_m;
     if (length > 0) judgement.distance_error = error / length;
   }
   return judgement;

@@ -60,7 +60,7 @@ void OperatorMotion::advance(const geometry::Heading& aim, double step) {
   }
 }
 
-geometry::Heading OperatorMotion::run_tracker(const Vector<2>& ball, double step) {
+geometry::Heading OperatorMotion::track_ball(const Vector<2>& ball, double step) {
   const geometry::Heading aim = required(ball);
   if (!begun_) pan_.value = aim.pan, tilt_.value = aim.tilt, log_focal_.value = aim.log_focal;
   const int steps = begun_ ? std::max(1, static_cast<int>(std::lround(step / kOperatorStep))) : 0;

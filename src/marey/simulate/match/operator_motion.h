@@ -30,7 +30,7 @@ class OperatorMotion {
                  std::uint64_t seed);
 
   /// Continues by `step` s, the ball at this place of the pitch, m. The first call starts there.
-  geometry::Heading run_tracker(const Vector<2>& ball, double step);
+  geometry::Heading track_ball(const Vector<2>& ball, double step);
 
  private:
   struct Spring {

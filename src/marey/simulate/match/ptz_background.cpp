@@ -206,8 +206,8 @@ struct Lookup {
       const Vector<2> at = centre.head<2>() + ground * ray.head<2>();
       return {static_cast<float>((at.x() + kRound) / kTexel - 0.5), static_cast<float>((at.y() + kNear) / kTexel - 0.5)};
     }
-    const double method = std::min(far, side);
-    const Vector<3> at = centre + method * ray;
+    const double distance = std::min(far, side);
+    const Vector<3> at = centre + distance * ray;
     double along = extent.depth + at.x() + kRound;  // along the far wall; the left one before it, the right one after it
     if (side < far) along = ray.x() < 0 ? at.y() + kNear : extent.depth + extent.across + (size.width + kRound - at.y());
     const double column = std::clamp(along / kWallTexel - 0.5, 0.0, extent.wall.width - 1.0);

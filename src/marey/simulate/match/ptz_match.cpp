@@ -60,7 +60,7 @@ void PtzMatch::advance() {
   ++frame_;
   motion_.advance(time());
   before_ = now_;
-  now_ = operator_.run_tracker(motion_.ball(), 1 / options_.rate_hz);
+  now_ = operator_.track_ball(motion_.ball(), 1 / options_.rate_hz);
   if (frame_ == 0) before_ = now_;
   const Camera other = geometry::camera_of(kOtherTripod, kOtherHeading, options_.size);
   camera_.emplace(heading() ? camera_now(*heading()) : other);
@@ -115,14 +115,14 @@ cv::Mat PtzMatch::off_screen(const cv::Mat& shown) const {
 cv::Mat PtzMatch::blurred(const cv::Mat& sharp) const {
   if (!heading() || options_.exposure <= 0) return sharp;
   const double px = std::exp(now_.log_focal) * options_.size.width / 2 * options_.exposure * options_.rate_hz;
-  const Vector<2> method(px * (now_.pan - before_.pan) * std::cos(now_.tilt), px * (now_.tilt - before_.tilt));
-  const double length = method.norm();
+  const Vector<2> shift(px * (now_.pan - before_.pan) * std::cos(now_.tilt), px * (now_.tilt - before_.tilt));
+  const double length = shift.norm();
   if (length < 0.3) return sharp;
   constexpr int kOften = 33;
   const int half = static_cast<int>(std::ceil(length / 2)) + 1;
   cv::Mat kernel(2 * half + 1, 2 * half + 1, CV_32F, cv::Scalar(0)), result;
   for (int i = 0; i < kOften; ++i) {
-    const Vector<2> at = Vector<2>(half, half) + ((i + 0.5) / kOften - 0.5) * method;
+    const Vector<2> at = Vector<2>(half, half) + ((i + 0.5) / kOften - 0.5) * shift;
     const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
     const auto a = static_cast<float>(at.x() - x), b = static_cast<float>(at.y() - y);
     kernel.at<float>(y, x) += (1 - a) * (1 - b) / kOften;

@@ -125,15 +125,15 @@ Vector<2> SquareMotion::required(Walker& walker) {
     const double maximum = 1.4 * walker.pace;
     return velocity.norm() > maximum ? Vector<2>(velocity * (maximum / velocity.norm())) : velocity;
   }
-  const Vector<2> method = walker.goals.front() - walker.person.location;
-  if (method.norm() < kArrived && walker.goals.size() > 1) {
+  const Vector<2> to_goal = walker.goals.front() - walker.person.location;
+  if (to_goal.norm() < kArrived && walker.goals.size() > 1) {
     if (walker.stop_for > 0) {
       walker.stop_for -= kStep;
       return Vector<2>::Zero();
     }
     walker.goals.erase(walker.goals.begin());
   }
-  return walker.pace * method.normalized();
+  return walker.pace * to_goal.normalized();
 }
 
 /// Away from who is near, and a little to the right of who comes.

@@ -147,11 +147,11 @@ class Beam {
     double sum = 0;
     for (const std::size_t other : nearest_[name]) {
       if (answer.point_of[other] == kNoIndex) continue;
-      const Vector<3> method = learned_.locations[name] - learned_.locations[other];
+      const Vector<3> expected = learned_.locations[name] - learned_.locations[other];
       const Vector<3> detected =
           *turn_ * (scene_.locations[point] - scene_.locations[static_cast<std::size_t>(answer.point_of[other])]);
-      const double deviation = options_.direction * method.norm() + kMinDirection;
-      sum += std::max(kDirectionTop - (detected - method).squaredNorm() / (2 * deviation * deviation), kDirectionFloor);
+      const double deviation = options_.direction * expected.norm() + kMinDirection;
+      sum += std::max(kDirectionTop - (detected - expected).squaredNorm() / (2 * deviation * deviation), kDirectionFloor);
     }
     return sum;
   }

@@ -82,7 +82,7 @@ std::map<TrackId, int> LabelTracker::borne() const {
 std::span<const int> LabelTracker::step(Timestamp now, std::span<const TrackedPoint> points) {
   find_points(now, points);
   note_lost();
-  find_review_items(now, points);
+  find_uncertain_names(now, points);
   if (!open_.empty()) {
     expect_lost(now);
     weigh(points);
@@ -159,7 +159,7 @@ double LabelTracker::lack(std::size_t name, const Vector<3>& location) const {
 }
 
 /// What is open: tracks without a name, and those uncertain. An uncertain track is not evidence of others.
-void LabelTracker::find_review_items(Timestamp now, std::span<const TrackedPoint> points) {
+void LabelTracker::find_uncertain_names(Timestamp now, std::span<const TrackedPoint> points) {
   open_.clear();
   std::size_t there = 0, sure = 0;
   for (std::size_t name = 0; name < names(); ++name) names_open_[name] = !locations_[name], trusted_[name] = 0;
@@ -173,7 +173,7 @@ void LabelTracker::find_review_items(Timestamp now, std::span<const TrackedPoint
     }
     ++there;
     const auto name = static_cast<std::size_t>(known.name);
-    const bool flagged = points[p].fixed == kNoIndex && lack(name, points[p].location) > options_.review_item;
+    const bool flagged = points[p].fixed == kNoIndex && lack(name, points[p].location) > options_.max_lack;
     if (!flagged) {
       known.flagged.reset();
       known.sums.clear();

@@ -18,7 +18,7 @@ constexpr double kMisfit = 2, kMaxWider = 4;  // times as far off as distances o
 }  // namespace
 
 void Labelling::forget() {
-  review_items_.clear();
+  candidates_.clear();
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) chains_.set_name(chain, kNoIndex);
 }
 

@@ -37,9 +37,9 @@ class Result {
     for (const Recording::TimeStep& time_step : recording.instants()) labelled_.recording.add_time_step(time_step);
   }
 
-  Labelled made(const std::map<int, ReviewItem>& review_items) && {
+  Labelled made(const std::map<int, NameCandidates>& candidates) && {
     for (std::size_t name = 0; name < learned_.size(); ++name) add_named(name);
-    for (const auto& [track, tracklets] : nameless_) add_nameless(tracklets, review_items);
+    for (const auto& [track, tracklets] : nameless_) add_nameless(tracklets, candidates);
     return std::move(labelled_);
   }
 
@@ -87,14 +87,14 @@ class Result {
   }
 
   /// One track's pieces that stay without a name.
-  void add_nameless(const std::vector<int>& tracklets, const std::map<int, ReviewItem>& review_items) {
+  void add_nameless(const std::vector<int>& tracklets, const std::map<int, NameCandidates>& candidates) {
     const TrackId id = next_id();
     const auto word = [&](int name) { return name == kNoIndex ? std::string() : learned_.labels[static_cast<std::size_t>(name)]; };
     for (const int t : tracklets) {
-      const auto found = review_items.find(chains_.chain_of(t));
-      const ReviewItem review_item = found == review_items.end() ? ReviewItem{} : found->second;
-      labelled_.unnamed.push_back({id, tracklet(t).first, tracklet(t).last, word(review_item.best), word(review_item.next),
-                                   review_item.fit, review_item.margin});
+      const auto found = candidates.find(chains_.chain_of(t));
+      const NameCandidates named = found == candidates.end() ? NameCandidates{} : found->second;
+      labelled_.unnamed.push_back({id, tracklet(t).first, tracklet(t).last, word(named.best), word(named.next),
+                                   named.fit, named.margin});
     }
     labelled_.recording.put(joined({.id = id, .label = {}, .team = {}}, tracklets));
   }
@@ -129,8 +129,8 @@ class Result {
 }  // namespace
 
 Labelled labelled_result(const Recording& recording, const LearnedMarkers& learned, const NamedChains& chains,
-                         const DistanceModel& model, const std::map<int, ReviewItem>& review_items, double scale) {
-  Labelled labelled = Result(recording, learned, chains, model).made(review_items);
+                         const DistanceModel& model, const std::map<int, NameCandidates>& candidates, double scale) {
+  Labelled labelled = Result(recording, learned, chains, model).made(candidates);
   labelled.scale = scale;
   return labelled;
 }

@@ -29,7 +29,7 @@ class Labelling {
 
   Labelled run() {
     name_person();
-    Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, review_items_, scale_);
+    Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, candidates_, scale_);
     for (const int other : undecided_) labelled.undecided.push_back(other == assign::kNoIndex ? 0 : 1);
     const Misfit misfit_now = misfit();
     labelled.misfit = misfit_now.ratio;
@@ -103,7 +103,7 @@ class Labelling {
   double found_again_ = 0;                  // of the names, in other searches
   std::vector<int> undecided_;              // by name: which other it could as well be
   std::vector<int> search_again_;           // by name: which other those give
-  std::map<int, ReviewItem> review_items_;  // by chain without a name
+  std::map<int, NameCandidates> candidates_;  // by chain without a name
   std::vector<std::vector<int>> bearers_;   // by name, of the last round
 };
 

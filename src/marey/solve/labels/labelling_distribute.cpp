@@ -145,7 +145,7 @@ void Labelling::drop(const std::vector<int>& undecided) {
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
     const int name = chains_.chains()[static_cast<std::size_t>(chain)].name;
     if (name == kNoIndex || undecided[static_cast<std::size_t>(name)] == kNoIndex) continue;
-    review_items_[chain] = {.best = name, .next = undecided[static_cast<std::size_t>(name)], .fit = options_.min_fit, .margin = 0};
+    candidates_[chain] = {.best = name, .next = undecided[static_cast<std::size_t>(name)], .fit = options_.min_fit, .margin = 0};
     chains_.set_name(chain, kNoIndex);
   }
   chains_.gather();
@@ -159,22 +159,22 @@ void Labelling::assess() {
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
     const auto& its = fits[static_cast<std::size_t>(chain)];
     const int name = chains_.chains()[static_cast<std::size_t>(chain)].name;
-    ReviewItem review_item;
+    NameCandidates candidates;
     if (name == kNoIndex) {
       const auto best = std::max_element(its.begin(), its.end());
       if (*best > 0) {
-        review_item.best = static_cast<int>(best - its.begin());
-        review_item.fit = *best;
-        review_item.margin = margin(chain, review_item.best, fits, review_item.next);
+        candidates.best = static_cast<int>(best - its.begin());
+        candidates.fit = *best;
+        candidates.margin = margin(chain, candidates.best, fits, candidates.next);
       }
-      review_items_[chain] = review_item;
+      candidates_[chain] = candidates;
       continue;
     }
-    review_item.best = name;
-    review_item.fit = its[static_cast<std::size_t>(name)];
-    review_item.margin = margin(chain, name, fits, review_item.next);
-    if (review_item.fit >= options_.min_fit && review_item.margin >= options_.min_margin) continue;
-    review_items_[chain] = review_item;
+    candidates.best = name;
+    candidates.fit = its[static_cast<std::size_t>(name)];
+    candidates.margin = margin(chain, name, fits, candidates.next);
+    if (candidates.fit >= options_.min_fit && candidates.margin >= options_.min_margin) continue;
+    candidates_[chain] = candidates;
     dropped.push_back(chain);
   }
   for (const int chain : dropped) chains_.set_name(chain, kNoIndex);

@@ -82,9 +82,9 @@ class FoldSettler {
   }
 
   /// From a pose at frame `from` on, in one direction, until it meets the solution: appends rows and what they cost less.
-  void run_tracker(std::vector<double> pose, std::size_t from, int method, std::vector<std::vector<double>>& rows, double& gain) {
+  void solve_onwards(std::vector<double> pose, std::size_t from, int direction, std::vector<std::vector<double>>& rows, double& gain) {
     tracker_.start_from(std::move(pose));
-    for (auto f = static_cast<std::ptrdiff_t>(from) + method; f >= 0 && f < std::ssize(rows_); f += method) {
+    for (auto f = static_cast<std::ptrdiff_t>(from) + direction; f >= 0 && f < std::ssize(rows_); f += direction) {
       const auto at = static_cast<std::size_t>(f);
       const std::vector<double>& row = tracker_.step(1 / rate_hz_, frames_[at]).coordinates;
       if (apart(row, at) < kSameRad) return;
@@ -158,12 +158,12 @@ class FoldSettler {
   TimeChunk from_rotated(std::size_t limb, std::size_t f) {
     const auto [state, gain] = rotated(limb, f);
     TimeChunk segment{.begin = f, .end = f + 1, .rows = {}, .gain = gain};
-    run_tracker(state.coordinates, f, -1, segment.rows, segment.gain);
+    solve_onwards(state.coordinates, f, -1, segment.rows, segment.gain);
     segment.begin -= segment.rows.size();
     std::reverse(segment.rows.begin(), segment.rows.end());
     segment.rows.push_back(state.coordinates);
     const std::size_t before = segment.rows.size();
-    run_tracker(state.coordinates, f, 1, segment.rows, segment.gain);
+    solve_onwards(state.coordinates, f, 1, segment.rows, segment.gain);
     segment.end += segment.rows.size() - before;
     return segment;
   }

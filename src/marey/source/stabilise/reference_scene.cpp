@@ -114,7 +114,7 @@ bool StandingScene::take_corners(const cv::Mat& from) {
 }
 
 /// Where the corners that can be followed are seen; `within` is how many would be in the image.
-std::vector<TrackedPosition> StandingScene::run_tracker(const Corners& corners, const std::vector<cv::Mat>& pyramid,
+std::vector<TrackedPosition> StandingScene::track_corners(const Corners& corners, const std::vector<cv::Mat>& pyramid,
                                                         const SceneMotion& start, int& within) const {
   const Matrix<3> to_picture = moved_from_rest(start, view_);
   const auto inside = [this](const cv::Point2f& at) {
@@ -153,7 +153,7 @@ std::optional<SceneFit> StandingScene::fit(const std::vector<TrackedPosition>& l
 std::optional<SceneFit> StandingScene::find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid,
                                                  const SceneMotion& start, std::vector<TrackedPosition>* kept) const {
   int within = 0;
-  std::vector<TrackedPosition> locations = run_tracker(corners, pyramid, start, within);
+  std::vector<TrackedPosition> locations = track_corners(corners, pyramid, start, within);
   auto found = fit(locations, within, corners.at.size());
   if (kept != nullptr) *kept = std::move(locations);
   return found;

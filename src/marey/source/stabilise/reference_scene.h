@@ -70,7 +70,7 @@ class StandingScene {
   static std::vector<cv::Mat> pyramid_of(const cv::Mat& image, bool gradients);
   cv::Mat shrunk(const Image& image) const;
   bool take_corners(const cv::Mat& from);
-  std::vector<TrackedPosition> run_tracker(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
+  std::vector<TrackedPosition> track_corners(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
                                            int& within) const;
   std::optional<SceneFit> fit(const std::vector<TrackedPosition>& locations, int within, std::size_t all) const;
   std::optional<SceneFit> find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,

@@ -186,7 +186,7 @@ void ViewWatch::add(const Frame& frame) {
     begin(shrunk_to(frame.image.luma(), kAcross), time);
     next_s_ = time + kEvery_s;
   } else if (time >= next_s_ && !ambiguity_s_) {
-    run_tracker(shrunk_to(frame.image.luma(), kAcross), time);
+    track_scene(shrunk_to(frame.image.luma(), kAcross), time);
     next_s_ = time + kEvery_s;
   }
   previous_ = frame.image;
@@ -201,9 +201,9 @@ bool ViewWatch::was_cut(const Image& image, double time) {
   const double before = std::exchange(previous_change_, change);
   const bool stands_out = change > kCutChange && change > kCutStandsOut * default_change_ && change > kCutMore * before;
   default_change_ += (std::min(change, kCutChange) - default_change_) * 0.1;
-  const std::optional<double> review_item = std::exchange(ambiguity_s_, std::nullopt);
-  if (review_item && before > kCutAlone * change) {
-    cuts_.push_back(*review_item);
+  const std::optional<double> ambiguous_s = std::exchange(ambiguity_s_, std::nullopt);
+  if (ambiguous_s && before > kCutAlone * change) {
+    cuts_.push_back(*ambiguous_s);
     return true;
   }
   if (stands_out && shows_another_scene(image)) ambiguity_s_ = time;
@@ -266,7 +266,7 @@ bool ViewWatch::scrolls(const std::vector<TrackedPosition>& locations, const Shi
 
 /// First against the image that the others are reported against, which does not drift; where much of that is gone, against the last
 /// one.
-void ViewWatch::run_tracker(const cv::Mat& small, double time) {
+void ViewWatch::track_scene(const cv::Mat& small, double time) {
   const std::vector<cv::Mat> pyramid = pyramid_of_small(small, false);
   std::optional<Shift> at;
   const auto from_anchor = moved(anchor_, pyramid);

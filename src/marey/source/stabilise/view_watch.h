@@ -65,7 +65,7 @@ class ViewWatch {
   void begin(const cv::Mat& small, double time);
   bool was_cut(const Image& image, double time);
   bool shows_another_scene(const Image& image);
-  void run_tracker(const cv::Mat& small, double time);
+  void track_scene(const cv::Mat& small, double time);
   struct Motion {
     Shift by;
     double fraction = 0;  ///< of all corners, which agree

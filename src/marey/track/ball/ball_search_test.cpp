@@ -117,10 +117,10 @@ TEST(BallWay, WithoutABallNothingIsTold) {
 
 TEST(BallWay, AKickIsTold) {
   const auto ball = arc(38);
-  const auto method = reported(detected(ball, {10, 50}, 3, 0.1, 12));
-  for (std::size_t i = 3; i + 3 < method.size(); ++i) {
-    ASSERT_TRUE(method[i]) << i;
-    EXPECT_LT((method[i]->belief.location() - ball[i]).norm(), 0.2) << i;
+  const auto states = reported(detected(ball, {10, 50}, 3, 0.1, 12));
+  for (std::size_t i = 3; i + 3 < states.size(); ++i) {
+    ASSERT_TRUE(states[i]) << i;
+    EXPECT_LT((states[i]->belief.location() - ball[i]).norm(), 0.2) << i;
   }
 }
 
@@ -128,10 +128,10 @@ TEST(BallWay, ReportsRestingPositionAfterKick) {
   auto ball = std::vector<Vector<3>>(50, Vector<3>(20, 20, kBallRadius));
   const std::size_t lay = ball.size();
   for (int i = 1; i <= 40; ++i) ball.push_back(ball[0] + Vector<3>(9, 5, 0) * (i / kRate));
-  const auto method = reported(detected(ball, {10, 50}, 3, 0.1, 13));
+  const auto states = reported(detected(ball, {10, 50}, 3, 0.1, 13));
   for (std::size_t i = 3; i < lay; ++i) {
-    ASSERT_TRUE(method[i]) << i;
-    EXPECT_LT((method[i]->belief.location() - ball[i]).norm(), 0.2) << i;
+    ASSERT_TRUE(states[i]) << i;
+    EXPECT_LT((states[i]->belief.location() - ball[i]).norm(), 0.2) << i;
   }
   ball.resize(lay);  // no person kicks it: a bit of paint
   for (const auto& state : reported(detected(ball, {10, 50}, 3, 0.1, 14))) EXPECT_FALSE(state);
@@ -175,12 +175,12 @@ TEST(BallWay, RejectsObjectAlongTheStands) {
   BallArea area;
   area.possible = [](const Vector<2>& location) { return location.y() < 80; };
   area.pitch = [](const Vector<2>& location) { return location.y() < 69; };
-  const auto method = ball_trajectory(scene.time_steps, scene.views, area, {});
+  const auto states = ball_trajectory(scene.time_steps, scene.views, area, {});
   int found = 0;
-  for (std::size_t i = 0; i < method.size(); ++i) {
-    if (!method[i]) continue;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!states[i]) continue;
     ++found;
-    EXPECT_LT((method[i]->belief.location() - ball[i]).norm(), 0.5) << i;
+    EXPECT_LT((states[i]->belief.location() - ball[i]).norm(), 0.5) << i;
   }
   EXPECT_GE(found, 50);
 }

@@ -48,17 +48,17 @@ double top_speed(const Piece& piece, const std::vector<BallObservations>& time_s
 
 bool is_sure(const Piece& piece, const std::vector<BallObservations>& time_steps, const std::vector<BallStep>& steps,
              const std::vector<BallState>& states, const GroundRegion& pitch, const BallTrajectoryOptions& options) {
-  double evidence = 0, method = 0;
+  double evidence = 0, distance = 0;
   int detected = 0, beyond = 0;  // instants
   const double speed = top_speed(piece, time_steps, states);
   for (std::size_t i = piece.first; i < piece.end; ++i) {
     evidence += steps[i].evidence;
     detected += steps[i].evidence > 0 ? 1 : 0;
     beyond += steps[i].evidence > 0 && pitch && !pitch(states[i].belief.location().head<2>()) ? 1 : 0;
-    method = std::max(method, (states[i].belief.location() - states[piece.first].belief.location()).norm());
+    distance = std::max(distance, (states[i].belief.location() - states[piece.first].belief.location()).norm());
   }
   const bool plain = speed > options.as_people && 2 * beyond < detected;
-  return method >= options.min_trajectory && evidence >= (plain ? options.min_evidence : options.min_slow);
+  return distance >= options.min_trajectory && evidence >= (plain ? options.min_evidence : options.min_slow);
 }
 
 /// Instants at which something was seen that is surely the ball.
@@ -128,13 +128,13 @@ std::vector<std::optional<BallState>> ball_trajectory(std::vector<BallObservatio
   const std::vector<BallState> states = smooth_ball(time_steps, steps, *views, options.search.motion);
   const std::vector<bool> known =
       reported(time_steps, steps, observed_certainly(time_steps, steps, states, area.pitch, options), options);
-  std::vector<std::optional<BallState>> method(steps.size());
+  std::vector<std::optional<BallState>> distance(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool possible = !area.possible || area.possible(states[i].belief.location().head<2>());
-    if (known[i] && possible) method[i] = states[i];
+    if (known[i] && possible) distance[i] = states[i];
   }
-  add_rests(time_steps, *views, options.rest, method);
-  return method;
+  add_rests(time_steps, *views, options.rest, distance);
+  return distance;
 }
 
 }  // namespace marey::track::ball

@@ -61,7 +61,7 @@ class BrambleTracker::Impl {
     now_ = now;
     inspect_at(views);
     forget_slots();
-    for (const int id : particles_.ids()) run_tracker(id);
+    for (const int id : particles_.ids()) move_person(id);
     if (!options_.partitioned) particles_.resample(true);
     if (has_evidence()) welcome();
     particles_.resample(true);
@@ -162,7 +162,7 @@ class BrambleTracker::Impl {
   }
 
   /// Moves a person in every particle that holds it, or lets it go; weighs the result.
-  void run_tracker(int id) {
+  void move_person(int id) {
     const int slots = next_slots();
     particles_.each([&](int i, Particle& particle, filter::RandomStream& random) {
       Blob* blob = particle.find(id);

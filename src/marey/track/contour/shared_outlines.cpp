@@ -117,7 +117,7 @@ cv::Mat taken_by_others(std::span<const colour::RegionMember> members, const col
 
 void take_part(ContourTarget& target, const Box& box, const colour::RegionMember& member, const colour::ColourPatch& patch,
                const cv::Mat& blocked, cv::Size image) {
-  const Vector<2> review_item = target.height * Vector<2>(kGaitAcross, kGaitDown);
+  const Vector<2> gait_noise = target.height * Vector<2>(kGaitAcross, kGaitDown);
   hold(target, member.shift);
   target.measured.reset();
   if (member.visible < kMinVisible) return;
@@ -129,14 +129,14 @@ void take_part(ContourTarget& target, const Box& box, const colour::RegionMember
   const double hidden_factor = 1 + (kHiddenCentre - 1) * std::min(1.0, 2 * (1 - member.visible));
   if (!spline || spline->count() != count || part < kMinOfTypical * doubt_of_area || part > kMaxOfTypical / doubt_of_area) {
     // No outline results from it, but a place does.
-    target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * review_item + Vector<2>::Constant(1)};
+    target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * gait_noise + Vector<2>::Constant(1)};
     return;
   }
   colour::VisibleEdge edge = colour::visible_edge(*spline, patch, blocked, image, prior_deviation(target.height));
   target.shape = ShapeFilter(*spline, edge.deviations);
   target.hidden = std::move(edge.hidden);
   target.state = member.visible > kWhollyVisible ? Outline::State::detected : Outline::State::partly;
-  target.measured = {spline->centroid(), hidden_factor * review_item + Vector<2>::Constant(kSilhouetteNoise)};
+  target.measured = {spline->centroid(), hidden_factor * gait_noise + Vector<2>::Constant(kSilhouetteNoise)};
   target.knotted = false;
 }
 

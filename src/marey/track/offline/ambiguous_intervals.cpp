@@ -18,7 +18,7 @@ Box box_of(const TrackRow& row) {
 }
 
 /// A segment of rows of one tracklet uncertain, both ends included.
-struct ReviewItem {
+struct AmbiguousInterval {
   int first = 0, last = 0;
   int strongest = 0;    ///< the row in which others were nearest
   double overlap = -1;  ///< by how much they were
@@ -46,7 +46,7 @@ class AmbiguityFinder {
     find_overlaps();
     for (int t = 0; t < std::ssize(tracklets_); ++t) find_close_to_ends(t);
     for (Tracklet& tracklet : tracklets_) mark_unobserved(tracklet);
-    for (int t = 0; t < std::ssize(tracklets_); ++t) list_review_items(t);
+    for (int t = 0; t < std::ssize(tracklets_); ++t) list_intervals(t);
     name_encounters();
     std::vector<TrackletPart> all;
     for (int t = 0; t < std::ssize(tracklets_); ++t) part(t, all);
@@ -128,43 +128,43 @@ class AmbiguityFinder {
   }
 
   /// The rows uncertain of a tracklet, as segments with enough that is sure between them.
-  void list_review_items(int t) {
+  void list_intervals(int t) {
     const Tracklet& rows = tracklets_[t];
-    first_ambiguity_.push_back(static_cast<int>(review_items_.size()));
-    node_of_row_.emplace_back(rows.size(), -1);
+    first_interval_.push_back(static_cast<int>(intervals_.size()));
+    interval_of_row_.emplace_back(rows.size(), -1);
     int sure = kMinSure;
     for (int k = 0; k < std::ssize(rows); ++k) {
       if (!rows[k].ambiguous) {
         sure += rows[k].observed();
         continue;
       }
-      const bool begun = std::ssize(review_items_) > first_ambiguity_.back();
-      if (begun && (sure < kMinSure || time_of(rows[k]) - time_of(rows[review_items_.back().last]) < options_.parted)) {
-        review_items_.back().last = k;
+      const bool begun = std::ssize(intervals_) > first_interval_.back();
+      if (begun && (sure < kMinSure || time_of(rows[k]) - time_of(rows[intervals_.back().last]) < options_.parted)) {
+        intervals_.back().last = k;
       } else {
-        review_items_.push_back({k, k, k});
+        intervals_.push_back({k, k, k});
       }
-      if (nearest_[t][k] > review_items_.back().overlap) {
-        review_items_.back().overlap = nearest_[t][k];
-        review_items_.back().strongest = k;
+      if (nearest_[t][k] > intervals_.back().overlap) {
+        intervals_.back().overlap = nearest_[t][k];
+        intervals_.back().strongest = k;
       }
       sure = 0;
     }
-    for (int d = first_ambiguity_.back(); d < std::ssize(review_items_); ++d) {
-      ReviewItem& review_item = review_items_[d];
-      if (review_item.overlap < 0) review_item.strongest = (review_item.first + review_item.last) / 2;
-      for (int k = review_item.first; k <= review_item.last; ++k) {
-        node_of_row_.back()[k] = d;
+    for (int d = first_interval_.back(); d < std::ssize(intervals_); ++d) {
+      AmbiguousInterval& interval = intervals_[d];
+      if (interval.overlap < 0) interval.strongest = (interval.first + interval.last) / 2;
+      for (int k = interval.first; k <= interval.last; ++k) {
+        interval_of_row_.back()[k] = d;
         tracklets_[t][k].ambiguous = true;
       }
     }
   }
 
   void name_encounters() {
-    first_ambiguity_.push_back(static_cast<int>(review_items_.size()));
-    close_encounters_.reset(review_items_.size());
+    first_interval_.push_back(static_cast<int>(intervals_.size()));
+    encounters_.reset(intervals_.size());
     for (const Contact& contact : contacts_)
-      close_encounters_.join(node_of_row_[contact.a][contact.row_a], node_of_row_[contact.b][contact.row_b]);
+      encounters_.join(interval_of_row_[contact.a][contact.row_a], interval_of_row_[contact.b][contact.row_b]);
   }
 
   void part(int t, std::vector<TrackletPart>& all) {
@@ -172,19 +172,19 @@ class AmbiguityFinder {
     const auto count = static_cast<int>(rows.size());
     TrackletPart part{.tracklet = t, .first = 0, .end = count, .head_encounter = {}, .tail_encounter = {}};
     int done = 0;
-    for (int d = first_ambiguity_[t]; d < first_ambiguity_[t + 1]; ++d) {
-      const ReviewItem& review_item = review_items_[d];
-      const bool at_begin = sure_between(rows, done, review_item.first) < kMinSure;
-      const bool at_end = sure_between(rows, review_item.last + 1, count) < kMinSure;
-      const int close_encounter = close_encounters_.find(d);
-      done = review_item.last + 1;
-      if (at_end) part.tail_encounter = close_encounter;
-      if (at_begin) part.head_encounter = close_encounter;
+    for (int d = first_interval_[t]; d < first_interval_[t + 1]; ++d) {
+      const AmbiguousInterval& interval = intervals_[d];
+      const bool at_begin = sure_between(rows, done, interval.first) < kMinSure;
+      const bool at_end = sure_between(rows, interval.last + 1, count) < kMinSure;
+      const int encounter = encounters_.find(d);
+      done = interval.last + 1;
+      if (at_end) part.tail_encounter = encounter;
+      if (at_begin) part.head_encounter = encounter;
       if (at_begin || at_end) continue;
-      part.tail_encounter = close_encounter;
-      part.end = review_item.strongest;
+      part.tail_encounter = encounter;
+      part.end = interval.strongest;
       all.push_back(part);
-      part = {.tracklet = t, .first = review_item.strongest, .end = count, .head_encounter = close_encounter, .tail_encounter = {}};
+      part = {.tracklet = t, .first = interval.strongest, .end = count, .head_encounter = encounter, .tail_encounter = {}};
     }
     all.push_back(part);
   }
@@ -200,10 +200,10 @@ class AmbiguityFinder {
   std::vector<Entry> entries_;                ///< by frame, then from left to right
   std::vector<std::vector<double>> nearest_;  ///< of each row: by how much another overlaps it, at most
   std::vector<Contact> contacts_;
-  std::vector<ReviewItem> review_items_;  ///< of all tracklets, one after another
-  std::vector<int> first_ambiguity_;      ///< of each tracklet
-  std::vector<std::vector<int>> node_of_row_;
-  assign::DisjointSets close_encounters_;  ///< of doubts
+  std::vector<AmbiguousInterval> intervals_;  ///< of all tracklets, one after another
+  std::vector<int> first_interval_;      ///< of each tracklet
+  std::vector<std::vector<int>> interval_of_row_;
+  assign::DisjointSets encounters_;  ///< of doubts
 };
 
 }  // namespace

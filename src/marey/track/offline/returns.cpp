@@ -55,8 +55,8 @@ double perimeter(const Box& view) {
 }
 
 double distance_along(double a, double b, const Box& view) {
-  const double method = std::abs(a - b);
-  return std::min(method, perimeter(view) - method);
+  const double distance = std::abs(a - b);
+  return std::min(distance, perimeter(view) - distance);
 }
 
 /// Of the height without those that the border cuts.
@@ -222,8 +222,8 @@ class Returns {
       const Crossing &out = tails_[static_cast<std::size_t>(row)], &in = heads_[static_cast<std::size_t>(column)];
       const double away = in.time - out.time;
       if (!out.of_border || !in.of_border || out.of_recording || in.of_recording || away < options_.shortest_away) return;
-      const double size = std::sqrt(out.size * in.size), method = distance_along(out.location, in.location, view_);
-      if (method > (1 + kFastest * away) * size || std::abs(std::log(in.size / out.size)) > kMaxGrown) return;
+      const double size = std::sqrt(out.size * in.size), distance = distance_along(out.location, in.location, view_);
+      if (distance > (1 + kFastest * away) * size || std::abs(std::log(in.size / out.size)) > kMaxGrown) return;
       const std::optional<double> clothes = wardrobe.log_ratio(row, column);
       if (!clothes) return;
       pairs_.push_back({row, column, *clothes + log_time(away)});
@@ -234,8 +234,8 @@ class Returns {
   double log_position(const Crossing& out, const Crossing& in, double spread) const {
     const double size = std::sqrt(out.size * in.size) * spread, pace = in.upright ? options_.along : options_.across;
     const double deviation = size * (kPositionUnsure + pace * (in.time - out.time));
-    const double method = distance_along(out.location, in.location, view_) / deviation;
-    const double near = std::exp(-0.5 * method * method) / (std::sqrt(2 * std::numbers::pi) * deviation);
+    const double distance = distance_along(out.location, in.location, view_) / deviation;
+    const double near = std::exp(-0.5 * distance * distance) / (std::sqrt(2 * std::numbers::pi) * deviation);
     return std::log((1 - options_.anywhere) * near + options_.anywhere / perimeter(view_)) - std::log(density_of_newcomers(in));
   }
 
@@ -244,8 +244,8 @@ class Returns {
     double sum = kAnywhereCounts / perimeter(view_), count = kAnywhereCounts;
     for (const Crossing& other : heads_) {
       if (&other == &in || !other.of_border || other.of_recording) continue;
-      const double deviation = kBandwidth * in.size, method = distance_along(other.location, in.location, view_) / deviation;
-      sum += std::exp(-0.5 * method * method) / (std::sqrt(2 * std::numbers::pi) * deviation);
+      const double deviation = kBandwidth * in.size, distance = distance_along(other.location, in.location, view_) / deviation;
+      sum += std::exp(-0.5 * distance * distance) / (std::sqrt(2 * std::numbers::pi) * deviation);
       count += 1;
     }
     return sum / count;

@@ -198,8 +198,8 @@ double TrackletLinker::score_of(const End& tail, const End& head, Passage passag
   double merit = gain(tail, head);
   const double gap = head.time - tail.time;
   if (passage != Passage::apart) {
-    const double method = (head.position - tail.position).norm() / std::sqrt(tail.size * head.size);
-    if (passage == Passage::as_tracked || method < kStep + kPace * gap) merit = std::max(merit, kOutOfEncounter);
+    const double distance = (head.position - tail.position).norm() / std::sqrt(tail.size * head.size);
+    if (passage == Passage::as_tracked || distance < kStep + kPace * gap) merit = std::max(merit, kOutOfEncounter);
   }
   if (passage == Passage::as_tracked)
     merit += kAsTracked;

@@ -57,9 +57,9 @@ int number_at(const std::vector<TrackRow>& rows, int frame, double x) {
 
 /// Two meet in mid image, stop, and each goes back to where it came from; the tracker takes them for two who passed.
 std::vector<Shown> rotated_back(int k, int left_wears, int right_wears) {
-  const double method = k < 30 ? 5.0 * k : k < 36 ? 150 : 150 - 5.0 * (k - 36);
+  const double walked = k < 30 ? 5.0 * k : k < 36 ? 150 : 150 - 5.0 * (k - 36);
   const bool swapped = k >= 33;
-  const Shown left{swapped ? 2 : 1, 150 + method, 200, left_wears}, right{swapped ? 1 : 2, 460 - method, 203, right_wears};
+  const Shown left{swapped ? 2 : 1, 150 + walked, 200, left_wears}, right{swapped ? 1 : 2, 460 - walked, 203, right_wears};
   return swapped ? std::vector{right, left} : std::vector{left, right};
 }
 

@@ -53,13 +53,13 @@ struct RosterTarget {
     bool whole = true;  ///< not smaller than the marker
   };
   /// What it was before it took a point that may as well be a false one; given back where the next frame does not confirm it.
-  struct ReviewItem {
+  struct Undo {
     filter::AnyFilter<D> filter;
     Vector<D> last_position;
     double unobserved = 0;  ///< s
     double score = 0;       ///< log-likelihood ratio of its points since, against clutter
   };
-  std::vector<ReviewItem> review_item = {};  ///< one or none
+  std::vector<Undo> undo = {};  ///< one or none
 
   static constexpr std::size_t kKept = 14, kMaxKept = 240;
   std::vector<Measured> measured =

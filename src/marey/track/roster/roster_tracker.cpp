@@ -60,7 +60,7 @@ class RosterTracker final : public Tracker<D> {
       if (neighbours_.used()) {
         neighbours_.check_tracked(targets_, detected, taken_, now);
         match(detected, [](const Target& target) { return !target.observation; });
-      } else if (undo_flagged()) {
+      } else if (undo_uncertain()) {
         match(detected, [](const Target& target) { return !target.observation; });
       }
       close_encounters_.meet(targets_, detected, likelihood_);
@@ -129,9 +129,9 @@ class RosterTracker final : public Tracker<D> {
       } else if (coasts(target)) {
         coast(target);
       }
-      for (auto& review_item : target.review_item) {
-        review_item.filter.predict_unobserved(dt_);
-        review_item.unobserved += dt_;
+      for (auto& undo : target.undo) {
+        undo.filter.predict_unobserved(dt_);
+        undo.unobserved += dt_;
       }
       target.unobserved += dt_;
       target.observation.reset();
@@ -153,30 +153,30 @@ class RosterTracker final : public Tracker<D> {
   }
 
   /// Targets that took a doubtful point and are missed right afterwards are what they were before. Whether there are any.
-  bool undo_flagged() {
+  bool undo_uncertain() {
     bool any = false;
     for (Target& target : targets_) {
-      if (target.review_item.empty() || target.observation) continue;
-      auto& before = target.review_item.front();
+      if (target.undo.empty() || target.observation) continue;
+      auto& before = target.undo.front();
       target.filter = std::move(before.filter);
       target.last_position = before.last_position;
       target.unobserved = before.unobserved;
       if (!target.measured.empty()) target.measured.pop_back();
-      target.review_item.clear();
+      target.undo.clear();
       any = true;
     }
     return any;
   }
 
   /// Keeps what the target was before it takes a point, as long as that may as well be clutter.
-  void review_item(Target& target, const Vector<D>& location, const Matrix<D>& R) {
+  void keep_for_undo(Target& target, const Vector<D>& location, const Matrix<D>& R) {
     if (!likelihood_.cluttered() || !target.on_roster()) return;
     const double merit = likelihood_.log_return(target.filter.log_likelihood(location, R));
-    if (!target.review_item.empty()) {
-      target.review_item.front().score += merit;
-      if (target.review_item.front().score > kAccepted) target.review_item.clear();
+    if (!target.undo.empty()) {
+      target.undo.front().score += merit;
+      if (target.undo.front().score > kAccepted) target.undo.clear();
     } else if (merit < kFlagged) {
-      target.review_item.push_back({target.filter, target.last_position, target.unobserved, merit});
+      target.undo.push_back({target.filter, target.last_position, target.unobserved, merit});
     }
   }
 
@@ -279,7 +279,7 @@ class RosterTracker final : public Tracker<D> {
       Matrix<D> R = likelihood_.noise_of(point, target);
       if (target.crowded) R.diagonal().array() += square(kCrowdNoise * target.width);
       if (target.standing != Standing::established) target.score += likelihood_.log_ratio(target, point.value, R);
-      review_item(target, point.value, R);
+      keep_for_undo(target, point.value, R);
       target.filter.correct(point.value, R);
       remember(target, point.value, R, likelihood_.shows_whole(target, point));
       if (target.unobserved > 1.5 * dt_) target.since = *now_;

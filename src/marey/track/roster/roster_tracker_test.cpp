@@ -177,8 +177,8 @@ TEST(RosterTracker, KeepsIdsInSpaceWhenEveryMotionTurnsBack) {
       std::vector<Observation<3>> detected;
       for (int m = 0; m < 12; ++m) {  // up to 1.1 m/s, each on its own path
         auto& point = detected.emplace_back();
-        const double method = 2.4 * m;
-        point.value = Vector<3>(0.4 * (m % 4), 0.4 * (m / 4), 1) + 0.1 * m * t * Vector<3>(std::cos(method), std::sin(method), 0.3);
+        const double angle = 2.4 * m;
+        point.value = Vector<3>(0.4 * (m % 4), 0.4 * (m / 4), 1) + 0.1 * m * t * Vector<3>(std::cos(angle), std::sin(angle), 0.3);
         point.covariance = 1e-8 * Matrix<3>::Identity();
       }
       for (const Track<3>& track : tracker->step(timestamp_from_seconds(i / rate), detected)) {

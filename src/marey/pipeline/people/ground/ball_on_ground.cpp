@@ -78,16 +78,16 @@ std::optional<TrackId> track_ball(std::vector<BallObservations> time_steps, cons
     where.pitch = [&](const Vector<2>& location) { return area.holds(location, kOnLines - area.margin()); };
   }
   const auto stop = [&] { return hooks.stop.stop_requested(); };
-  const std::vector<std::optional<BallState>> method = track::ball::ball_trajectory(time_steps, views, where, options.method, stop);
+  const std::vector<std::optional<BallState>> states = track::ball::ball_trajectory(time_steps, views, where, options.trajectory, stop);
   const int last_id = recording.tracks().empty() ? 0 : number(recording.tracks().back().id());
   TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}, .kind = TrackKind::ball}, 3);
   std::size_t instant = 0;
-  for (std::size_t i = 0; i < method.size(); ++i) {
-    if (!method[i]) continue;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!states[i]) continue;
     while (instant < recording.instants().size() && recording.instants()[instant].index < time_steps[i].index) ++instant;
     if (instant == recording.instants().size()) break;
     if (recording.instants()[instant].index == time_steps[i].index)
-      track.add(static_cast<std::int32_t>(instant), sample_of(track.id(), *method[i], area));
+      track.add(static_cast<std::int32_t>(instant), sample_of(track.id(), *states[i], area));
   }
   if (track.empty()) return std::nullopt;
   const TrackId id = track.id();

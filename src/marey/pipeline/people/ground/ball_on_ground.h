@@ -17,7 +17,7 @@ namespace marey::pipeline::people::ground {
 
 struct BallOptions {
   detect::ball::BallDetectorOptions detector;
-  track::ball::BallTrajectoryOptions method;
+  track::ball::BallTrajectoryOptions trajectory;
 };
 
 /// Tracks the ball in `time_steps`, whose people are those of `recording` (in the user's frame, an instant an instant), and puts

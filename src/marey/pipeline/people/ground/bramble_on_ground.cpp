@@ -58,12 +58,12 @@ class BrambleCamera {
         id_(feed.id()),
         part_(part_with_people(view, area)),
         model_({.step = grid_step(view, area)}),
-        review_items_(feed.camera(), options.stabilise) {
+        view_ambiguities_(feed.camera(), options.stabilise) {
     if (options.ball) ball_.emplace(id_, view, area, options.ball->detector);
     if (options.live) return;
     std::vector<Frame> samples = feed.sample_beginning();
     corridor::NextTo next_to;
-    next_to.run([this, samples] { review_items_.inspect_at_beginning(samples); });
+    next_to.run([this, samples] { view_ambiguities_.inspect_at_beginning(samples); });
     if (ball_) next_to.run([this, samples] { ball_->prime(samples); });
     for (Frame& frame : samples) frame.image = frame.image.part(part_);
     model_.prime(samples);
@@ -72,7 +72,7 @@ class BrambleCamera {
   track::bramble::CameraEvidence observe(const Frame& frame) {
     ++frames_;
     corridor::NextTo next_to;
-    next_to.run([this, &frame] { review_items_.add(frame); });
+    next_to.run([this, &frame] { view_ambiguities_.add(frame); });
     Frame searched = frame;
     searched.image = frame.image.part(part_);
     track::bramble::CameraEvidence observed{id_, frame.time, in_whole_image(model_.of(searched))};
@@ -82,14 +82,14 @@ class BrambleCamera {
   }
 
   std::optional<track::ball::BallView> ball() const { return ball_ ? ball_->candidates() : std::nullopt; }
-  std::vector<std::string> news() { return review_items_.news(); }
+  std::vector<std::string> news() { return view_ambiguities_.news(); }
 
   void report(corridor::Summary& summary) const {
     corridor::Summary::Camera& counts = summary.cameras.emplace_back();
     counts.name = name_;
     counts.frames = frames_;
     counts.missed = summary.frames - frames_;
-    for (std::string& warning : review_items_.warnings()) summary.warnings.push_back(std::move(warning));
+    for (std::string& warning : view_ambiguities_.warnings()) summary.warnings.push_back(std::move(warning));
   }
 
  private:
@@ -104,7 +104,7 @@ class BrambleCamera {
   CameraId id_;
   cv::Rect part_;  // px, that is searched
   detect::blobs::ForegroundEvidence model_;
-  ViewAmbiguities review_items_;
+  ViewAmbiguities view_ambiguities_;
   std::optional<BallInView> ball_;
   std::int64_t frames_ = 0;
 };

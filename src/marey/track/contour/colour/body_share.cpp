@@ -191,10 +191,10 @@ ColourFractions fractions_by_colour(const ColourPatch& patch, const cv::Mat& gro
         if (square < kPlainGround * kPlainGround) fractions.covered.at<float>(y, x) = 0;
         continue;
       }
-      const cv::Vec3f method = body.at({x, y}) - ground.at<cv::Vec3f>(y, x);
-      const float contrast = method.dot(method);
+      const cv::Vec3f difference = body.at({x, y}) - ground.at<cv::Vec3f>(y, x);
+      const float contrast = difference.dot(difference);
       if (contrast < kMinContrast * kMinContrast) continue;
-      const float covered = std::clamp(away.dot(method) / contrast, 0.0F, 1.0F);
+      const float covered = std::clamp(away.dot(difference) / contrast, 0.0F, 1.0F);
       // What is unlike both (dark hair over a white shirt) is body too; a halo is not as far from the ground as that.
       const bool unlike = covered < 0.5F && square > kHalo * contrast;
       if (below > 0 && contrast >= kClearContrast * kClearContrast) overwidth.add(below, covered < 0.5F && !unlike);

@@ -234,12 +234,12 @@ class RegionDivision {
       }
     }
     sum += std::log(product);
-    double review_item = 0;
+    double penalty = 0;
     for (int j = 0; j < std::ssize(members_); ++j) {
       const Vector<2> off = (j == k ? shift : members_[j].shift) - members_[j].shifts.front();
-      review_item += off.squaredNorm() / std::pow(kShiftAmbiguity * members_[j].height, 2);
+      penalty += off.squaredNorm() / std::pow(kShiftAmbiguity * members_[j].height, 2);
     }
-    return kTempered * sum - 0.5 * review_item;
+    return kTempered * sum - 0.5 * penalty;
   }
 
   /// What a member adds to the likelihood of every second cell of a row, moved by whole cells, and what it leaves to those behind.
@@ -266,8 +266,8 @@ class RegionDivision {
     const Vector<2> from = member.shift;
     const double length = std::max(1.0, std::round(step * member.height / patch_.step)) * patch_.step;
     std::vector<Vector<2>> shifts{from};
-    for (const Vector<2>& method : {Vector<2>(1, 0), Vector<2>(-1, 0), Vector<2>(0, 1), Vector<2>(0, -1)}) {
-      shifts.push_back(from + length * method);
+    for (const Vector<2>& direction : {Vector<2>(1, 0), Vector<2>(-1, 0), Vector<2>(0, 1), Vector<2>(0, -1)}) {
+      shifts.push_back(from + length * direction);
     }
     if (elsewhere) shifts.insert(shifts.end(), member.shifts.begin() + 1, member.shifts.end());
     std::vector<double> values(shifts.size());

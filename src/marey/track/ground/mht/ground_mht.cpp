@@ -148,7 +148,7 @@ class GroundMht final : public GroundTracker {
   /// is trusted of it. Where there are boxes, these say which is hidden (ground_visibility.h).
   void find_shared(std::span<const Observation<2>> detected) {
     detected_.assign(detected.begin(), detected.end());
-    if (!limits_.review_item) return;
+    if (!limits_.distrust_shared) return;
     known_.clear();
     for (const int leaf : hypotheses_.best()) {
       const GroundTarget& target = leaves_[leaf].target;

@@ -10,7 +10,7 @@ struct GroundMhtLimits {
   double ratio = 1e-4;      ///< a hypothesis less likely than the best of its cluster by more than this factor is dropped
   int leaves = 2000;        ///< of all hypotheses of a cluster, counted once for each: a large cluster keeps fewer hypotheses
   bool fold = true;         ///< make one of hypotheses that have come to the same
-  bool review_item = true;  ///< trust less of an observation that may be of two who touch
+  bool distrust_shared = true;  ///< trust less of an observation that may be of two who touch
 };
 
 /// Follows people on the ground by multiple-hypothesis tracking (ground_mht.cpp).

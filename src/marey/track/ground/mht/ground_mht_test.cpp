@@ -138,7 +138,7 @@ TEST(GroundMht, WithoutPruningTheBestIsThatOfAllHypotheses) {
     GroundTrackerOptions options{
         .associate = GroundAssociation::mht, .clutter = 0.01, .births = 0.05, .hypotheses = 1'000'000, .window = 100};
     const auto tracker = make_ground_mht(options, ground_views({whole}),
-                                         {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .review_item = false});
+                                         {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .distrust_shared = false});
     Enumeration twin(options);
     for (int frame = 0; frame < 4; ++frame) {
       Detected detected;

@@ -137,8 +137,8 @@ class Parting {
   }
 
   bool too_fast(const GroundEnd& tail, const GroundEnd& head) const {
-    const double method = (head.state.location() - tail.state.location()).norm();
-    return method > options_.max_speed * seconds(head.time - tail.time) + options_.near;
+    const double distance = (head.state.location() - tail.state.location()).norm();
+    return distance > options_.max_speed * seconds(head.time - tail.time) + options_.near;
   }
 
   const CloseEncounter& close_encounter_;

@@ -184,7 +184,7 @@ class Chainer {
     }
     GroundChainOptions options = options_;
     options.longest_gap = longest;
-    merge(chains, run_tracker(tails, heads, GroundColours(detected, options_.teams), options));
+    merge(chains, best_links(tails, heads, GroundColours(detected, options_.teams), options));
   }
 
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
@@ -259,9 +259,9 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
                                       const GroundChainOptions& options) {
   const double gap = seconds(head.time - tail.time);
   if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
-  const double method = (head.state.location() - tail.state.location()).norm();
+  const double distance = (head.state.location() - tail.state.location()).norm();
   const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * square(EndpointError{}.location));
-  if (method > options.max_speed * gap + unsure) return std::nullopt;
+  if (distance > options.max_speed * gap + unsure) return std::nullopt;
   const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
   const double found_again = std::log((1 - tail.leaving) / tail.leaving) - 2 * std::log1p(gap);
   const double came = std::log(head.coming) + log_normal<2>(head.state.velocity(), anyhow);
@@ -272,7 +272,7 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
   return gain;
 }
 
-std::vector<int> run_tracker(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
+std::vector<int> best_links(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
                              const GroundChainOptions& options) {
   return assign::best_successors(static_cast<int>(tails.size()), gated_pairs(tails, heads, colours, options, 0));
 }

@@ -161,7 +161,7 @@ TEST(GroundJoin, NoOtherChainsExplainMore) {
       heads.push_back(head);
     }
     const GroundColours colours(detected);
-    const std::vector<int> next = run_tracker(tails, heads, colours, {});
+    const std::vector<int> next = best_links(tails, heads, colours, {});
     double sum = 0;
     for (std::size_t k = 0; k < next.size(); ++k) {
       if (next[k] != assign::kNoIndex) sum += *gain_of_joining(tails[k], heads[next[k]], colours, {});

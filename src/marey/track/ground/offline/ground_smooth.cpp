@@ -52,7 +52,7 @@ struct SmoothingPass {
   std::vector<GroundTimeStep> time_steps;
   std::vector<double> echoes;      ///< factor on covariances
   std::vector<double> pushes;      ///< up to the sample, in units of the typical power
-  std::vector<Matrix<2>> flagged;  ///< in place of the samples' own covariances, where there are any
+  std::vector<Matrix<2>> widened;  ///< in place of the samples' own covariances, where there are any
 
   SmoothingPass(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
       : samples(s), times(t), motion(m), time_steps(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
@@ -68,12 +68,12 @@ struct SmoothingPass {
 
   /// Counts samples of regions that are shared by how long their errors really persist, and those right before and after for no
   /// better: two who run together are seen as one before it is noticed. Paths are not found with that: too little would hold them.
-  void ambiguity_shared() {
-    flagged.clear();
-    for (const GroundSample& sample : samples) flagged.push_back(sample.spread());
-    const auto review_item = [&](std::size_t i, std::size_t shared) {
+  void widen_shared() {
+    widened.clear();
+    for (const GroundSample& sample : samples) widened.push_back(sample.spread());
+    const auto widen = [&](std::size_t i, std::size_t shared) {
       if (std::abs(seconds(times[samples[i].instant] - times[samples[shared].instant])) > shared_memory) return;
-      if (samples[shared].spread().trace() > flagged[i].trace()) flagged[i] = samples[shared].spread();
+      if (samples[shared].spread().trace() > widened[i].trace()) widened[i] = samples[shared].spread();
       const double before = i > 0 ? seconds_to(i) : seconds_to(1);
       const double after = i + 1 < samples.size() ? seconds_to(i + 1) : before;
       echoes[i] = std::max(echoes[i], 1 / std::tanh((before + after) / 4 / shared_memory));
@@ -82,17 +82,17 @@ struct SmoothingPass {
     std::size_t last = none;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples[i].shared) last = i;
-      if (last != none) review_item(i, last);
+      if (last != none) widen(i, last);
     }
     last = none;
     for (std::size_t i = samples.size(); i-- > 0;) {
       if (samples[i].shared) last = i;
-      if (last != none) review_item(i, last);
+      if (last != none) widen(i, last);
     }
   }
 
   Matrix<2> spread(std::size_t i) const {
-    const Matrix<2> own = flagged.empty() ? samples[i].spread() : flagged[i];
+    const Matrix<2> own = widened.empty() ? samples[i].spread() : widened[i];
     return own * (echoes[i] / time_steps[i].fit);
   }
   /// From the sample before.
@@ -142,7 +142,7 @@ void find_spreads(SmoothingPass& detected, const PathSmoother& last) {
   std::vector<Matrix<2>> spreads;
   if (shared && detected.samples.size() > 1) {
     SmoothingPass doubting = detected;
-    doubting.ambiguity_shared();
+    doubting.widen_shared();
     spreads = path_of(doubting).position_covariances();
   } else {
     spreads = last.position_covariances();
