@@ -99,7 +99,7 @@ void initialise_ten(benchmark::State& state) {
 BENCHMARK(initialise_ten)->Unit(benchmark::kMillisecond)->Iterations(500);
 
 /// This many points, and nine bodies of three, four and five markers that are not among them.
-void inspect_for_absent(benchmark::State& state) {
+void search_absent(benchmark::State& state) {
   moving::Random random(3);
   const Room room(0, static_cast<int>(state.range(0)), random);
   std::vector<Body> absent;
@@ -120,6 +120,6 @@ void inspect_for_absent(benchmark::State& state) {
   report(state, times);
   state.counters["found_absent"] = static_cast<double>(reported) / static_cast<double>(9 * instants);
 }
-BENCHMARK(inspect_for_absent)->Arg(60)->Arg(100)->Arg(300)->Unit(benchmark::kMillisecond)->Iterations(1000);
+BENCHMARK(search_absent)->Arg(60)->Arg(100)->Arg(300)->Unit(benchmark::kMillisecond)->Iterations(1000);
 
 }  // namespace

@@ -245,15 +245,15 @@ class Assessor {
 std::vector<OutlineCase> cases(int videos) {
   const int few = std::max(1, videos / 10), half = std::max(1, videos * 2 / 5);
   using S = simulate::people::PeopleSituation;
-  const auto stabilise = simulate::people::LightChange::stabilise;
-  return {{.name = "apart, 25 px", .situation = S::apart, .height_px = 25, .light = stabilise, .videos = few},
-          {.name = "apart, 60 px", .situation = S::apart, .height_px = 60, .light = stabilise, .videos = few},
-          {.name = "partly hidden, 25 px", .situation = S::crossing, .height_px = 25, .light = stabilise, .videos = videos},
-          {.name = "partly hidden, 60 px", .situation = S::crossing, .height_px = 60, .light = stabilise, .videos = videos},
-          {.name = "behind a board, 25 px", .situation = S::post, .height_px = 25, .light = stabilise, .videos = videos},
-          {.name = "behind a board, 60 px", .situation = S::post, .height_px = 60, .light = stabilise, .videos = videos},
-          {.name = "abrupt changes, 60 px", .situation = S::abrupt, .height_px = 60, .light = stabilise, .videos = few},
-          {.name = "border, 60 px", .situation = S::border, .height_px = 60, .light = stabilise, .videos = few},
+  const auto constant = simulate::people::LightChange::constant;
+  return {{.name = "apart, 25 px", .situation = S::apart, .height_px = 25, .light = constant, .videos = few},
+          {.name = "apart, 60 px", .situation = S::apart, .height_px = 60, .light = constant, .videos = few},
+          {.name = "partly hidden, 25 px", .situation = S::crossing, .height_px = 25, .light = constant, .videos = videos},
+          {.name = "partly hidden, 60 px", .situation = S::crossing, .height_px = 60, .light = constant, .videos = videos},
+          {.name = "behind a board, 25 px", .situation = S::post, .height_px = 25, .light = constant, .videos = videos},
+          {.name = "behind a board, 60 px", .situation = S::post, .height_px = 60, .light = constant, .videos = videos},
+          {.name = "abrupt changes, 60 px", .situation = S::abrupt, .height_px = 60, .light = constant, .videos = few},
+          {.name = "border, 60 px", .situation = S::border, .height_px = 60, .light = constant, .videos = few},
           {.name = "gradual light, 60 px",
            .situation = S::apart,
            .height_px = 60,

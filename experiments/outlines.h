@@ -36,7 +36,7 @@ struct OutlineCase {
   double height_px = 60;
   bool recorded = false;     ///< as a camera with sharpening and a codec gives it
   bool same_shirts = false;  ///
-  simulate::people::LightChange light = simulate::people::LightChange::stabilise;
+  simulate::people::LightChange light = simulate::people::LightChange::constant;
   int videos = 1;
   int people = 0;
   std::optional<double> true_jitter = {};  ///< px, as in OutlineScore, of the true silhouettes' centres

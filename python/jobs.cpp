@@ -57,7 +57,7 @@ nb::tuple track_people(nb::dict given) {
   const Rows rows(table_of(job), options);
   job.input.own_filter = own_filter(options);
   pipeline::people::ImagePeopleOptions how = rows.resolved([&] { return resolved(job); });
-  how.next_to = (std::filesystem::temp_directory_path() / "marey").string();
+  how.spill_path = (std::filesystem::temp_directory_path() / "marey").string();
   return in_image(options, job.input, rows, [&](const auto& feed, auto output, auto sinks, const Hooks& hooks) {
     output.masks = job.masks;
     output.target_masks = job.target_masks;

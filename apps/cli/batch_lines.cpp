@@ -25,10 +25,10 @@ std::string quoted(const std::string& word) {
 
 int default_array_jobs(const BatchPlan& plan) {
   constexpr double kScoreWeight = 60;  // s of work: Slurm starts jobs every 3 s
-  constexpr int kMinCount = 8;
+  constexpr int kMinTasks = 8;
   double seconds = 0;
   for (const BatchTask& task : plan.tasks) seconds += task.costs.seconds;
-  return static_cast<int>(std::clamp(seconds / kScoreWeight, double{kMinCount}, double{pipeline::jobs::kMaxArrayJobs}));
+  return static_cast<int>(std::clamp(seconds / kScoreWeight, double{kMinTasks}, double{pipeline::jobs::kMaxArrayJobs}));
 }
 
 BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads, int jobs) {

@@ -69,8 +69,8 @@ void run(ConvertCommand& command) {
 }
 
 /// The files read or written beside a file of a pair.
-std::vector<std::string> next_to(const std::string& path) {
-  const std::string other = format::file_next_to(path);
+std::vector<std::string> companion_of(const std::string& path) {
+  const std::string other = format::companion_file(path);
   return other.empty() ? std::vector<std::string>{} : std::vector{other};
 }
 
@@ -141,8 +141,8 @@ void add_convert(Command& program) {
                      "a C3D file whose analog channels, force plates and events go along into B, a C3D file too: the one that A, a "
                      "take, was made of");
   add_reading_options(command, *options);
-  command.also_reads([options] { return next_to(options->from); });
-  command.also_writes([options] { return next_to(options->to); });
+  command.also_reads([options] { return companion_of(options->from); });
+  command.also_writes([options] { return companion_of(options->to); });
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

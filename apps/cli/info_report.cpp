@@ -182,8 +182,8 @@ void print_recording(const std::string& path, const format::Format& format, cons
   if (format.name == "take") print_row("observations", counted(summary.detected));
   if (!info.header.bodies.empty()) print_row("bodies", names_of(info.header.bodies));
   print_row("skeletons", skeletons_of(info.header.bodies));
-  if (info.next_to.channels > 0) print_row("analog", fmt::format("{} channels", info.next_to.channels));
-  if (info.next_to.events > 0) print_row("events", fmt::format("{}", info.next_to.events));
+  if (info.auxiliary.channels > 0) print_row("analog", fmt::format("{} channels", info.auxiliary.channels));
+  if (info.auxiliary.events > 0) print_row("events", fmt::format("{}", info.auxiliary.events));
   print_row("positions", to_string(info.header.frame) + (y_grows_down(info.header) ? "; y grows downwards" : ""));
   if (info.header.rig && info.header.time_base.kind != TimeBase::Kind::unspecified)
     print_row("times", to_string(info.header.time_base, *info.header.rig));
@@ -244,8 +244,8 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   if (info.header.track_kind != TrackKind::unspecified) result["track_kind"] = to_string(info.header.track_kind);
   for (const Body& body : info.header.bodies)
     result["bodies"].push_back({{"name", body.label}, {"skeleton", body.skeleton}, {"markers", body.markers.size()}});
-  if (info.next_to.channels > 0) result["analog_channels"] = info.next_to.channels;
-  if (info.next_to.events > 0) result["events"] = info.next_to.events;
+  if (info.auxiliary.channels > 0) result["analog_channels"] = info.auxiliary.channels;
+  if (info.auxiliary.events > 0) result["events"] = info.auxiliary.events;
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
   if (info.header.rig && !info.header.rig->cameras.empty()) result["cameras"] = info_json(*info.header.rig);

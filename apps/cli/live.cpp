@@ -129,7 +129,7 @@ std::vector<std::string> played_files(const LiveCommand& command) {
   return files;
 }
 
-std::vector<std::string> files_next_to_take(const LiveCommand& command) {
+std::vector<std::string> files_with_take(const LiveCommand& command) {
   if (command.record != Kept::video) return {};
   return pipeline::live::CameraVideos::files_of(images_of(command.out), rig_of_live_sources(command.sources));
 }
@@ -226,7 +226,7 @@ void add_live(Command& program) {
   command.choice("--targets", options->job.targets, kLiveTargets, "what is followed");
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
   command.also_reads([options] { return played_files(*options); });
-  command.also_writes([options] { return files_next_to_take(*options); });
+  command.also_writes([options] { return files_with_take(*options); });
   command.choice("--record", options->record, kKept,
                  "what is kept: the take alone, or the images too, a video of each camera and rig.toml in NAME_video");
   command.flag("--armed", options->armed, "record only from when r is pressed on, with the seconds before it");

@@ -30,8 +30,8 @@ struct SimulateMatch {
 };
 
 geometry::GroundSurface parse_crown(const std::string& text) {
-  constexpr double kMaxCount = 0.5;  // m
-  const std::vector<double> raised = numbers_in(text, 'x', closed(0, kMaxCount), "heights ACROSSxALONG in m, as 0.15x0.2");
+  constexpr double kMaxRaised = 0.5;  // m
+  const std::vector<double> raised = numbers_in(text, 'x', closed(0, kMaxRaised), "heights ACROSSxALONG in m, as 0.15x0.2");
   if (raised.size() != 2) throw WrongUsage("\"{}\" is not a crown; write heights ACROSSxALONG in m, as 0.15x0.2", text);
   geometry::GroundSurface ground;
   ground.across = raised[0], ground.along = raised[1];

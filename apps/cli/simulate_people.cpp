@@ -87,7 +87,7 @@ void add_simulate_people(Command& simulate) {
   for (const simulate::people::NamedPeopleSituation& known : simulate::people::people_situations())
     situations.emplace_back(known.name, known.situation);
   constexpr std::array<std::pair<const char*, LightChange>, 3> kLights{
-      {{"steady", LightChange::stabilise}, {"gradual", LightChange::gradual}, {"sudden", LightChange::sudden}}};
+      {{"steady", LightChange::constant}, {"gradual", LightChange::gradual}, {"sudden", LightChange::sudden}}};
   simulate::people::PeopleVideoOptions& video = options->video;
   command.choice("--situation", options->situation, situations, "what they do");
   command.output_folder("-o,--output", options->folder, "folder for the video and its truth");

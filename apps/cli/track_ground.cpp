@@ -83,7 +83,7 @@ std::vector<std::string> ground_files(const GroundCommand& command) {
   std::vector<std::string> files;
   const pipeline::people::ground::GroundOutput output = output_of(command);
   if (command.out.empty()) files.push_back(output.tracks);
-  if (const std::string second = format::file_next_to(output.tracks); !second.empty() && is_written_whole(output))
+  if (const std::string second = format::companion_file(output.tracks); !second.empty() && is_written_whole(output))
     files.push_back(second);
   std::error_code error;
   if (!std::filesystem::is_regular_file(command.rig, error)) return files;

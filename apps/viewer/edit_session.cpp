@@ -13,7 +13,7 @@
 namespace marey::viewer {
 namespace {
 
-constexpr std::chrono::seconds kBetweenAppearance{1};
+constexpr std::chrono::seconds kPollInterval{1};
 
 std::string history_text(const pipeline::take::EditHistory& history) {
   cli::Json edits = cli::Json::array();
@@ -87,7 +87,7 @@ void EditSession::run() {
     std::optional<std::pair<PageId, EditMessage>> request;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, kBetweenAppearance, [this] { return ending_ || request_; });
+      changed_.wait_for(lock, kPollInterval, [this] { return ending_ || request_; });
       if (ending_) return;
       request = std::exchange(request_, std::nullopt);
     }

@@ -121,9 +121,9 @@ Json header_json(const RecordingHeader& header) {
 
 /// Whether places from `low` to `high` lie on a pitch that begins at `corner`, and use at least half of it.
 bool fits_pitch(const Extent& extent, const geometry::PitchSize& pitch, const Vector<2>& corner) {
-  constexpr double kNextTo = 8;  // m: bench, linesmen, keepers behind their lines
+  constexpr double kMargin = 8;  // m: bench, linesmen, keepers behind their lines
   const Vector<2> size(pitch.length, pitch.width), low = extent.low.head<2>() - corner, high = extent.high.head<2>() - corner;
-  return (low.array() > -kNextTo).all() && ((high - size).array() < kNextTo).all() &&
+  return (low.array() > -kMargin).all() && ((high - size).array() < kMargin).all() &&
          ((high - low).array() > 0.5 * size.array()).all();
 }
 

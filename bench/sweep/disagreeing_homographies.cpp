@@ -17,12 +17,12 @@
 namespace marey::sweep {
 namespace {
 
-constexpr double kMinValue = 0.25, kMaxCount = 0.6;  // m, of each camera: two disagree by √2 times as much
+constexpr double kMinError = 0.25, kMaxError = 0.6;  // m, of each camera: two disagree by √2 times as much
 constexpr double kMaxDistance = 1.5;                 // m from the truth, where a track counts: the truth's own frame is off
 
 void use_homographies(const std::string& folder, std::uint64_t seed) {
   const Rig exact = format::rig::read_rig(folder + "/rig.toml");
-  const Rig off = simulate::match::known_by_homographies(exact, {}, kMinValue, kMaxCount, seed);
+  const Rig off = simulate::match::known_by_homographies(exact, {}, kMinError, kMaxError, seed);
   WholeFile file(folder + "/rig.toml");
   file.write(format::rig::rig_text(off));
   file.finish();

@@ -29,7 +29,7 @@ using simulate::people::RenderedFrame;
 using simulate::people::TrueFigure;
 
 constexpr int kEvery = 5;                           // frames, that are evaluated
-constexpr double kMinValue = 0.2, kMaxCount = 0.7;  // of the smaller silhouette, shared: what is evaluated as an overlap
+constexpr double kMinOverlap = 0.2, kMaxOverlap = 0.7;  // of the smaller silhouette, shared: what is evaluated as an overlap
 
 struct Scene {
   const char* name;
@@ -106,7 +106,7 @@ std::optional<std::size_t> kind_of(const TrueFigure& person, const std::vector<T
     nearer = person.foot.y() > other.foot.y();
   }
   if (maximum <= 0) return person.visible_fraction < 1 ? std::nullopt : std::optional<std::size_t>(0);
-  if (maximum < kMinValue || maximum > kMaxCount) return std::nullopt;
+  if (maximum < kMinOverlap || maximum > kMaxOverlap) return std::nullopt;
   return nearer ? 1 : 2;
 }
 

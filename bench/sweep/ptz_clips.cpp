@@ -146,7 +146,7 @@ void set(PtzRunOptions& options, const std::string& text) {
       {"unsure_px", [&](double v) { t.unsure_px = v; }},
       {"fraction", [&](double v) { t.fraction = v; }},
       {"patience", [&](double v) { t.patience = static_cast<int>(v); }},
-      {"inspect_again", [&](double v) { t.inspect_again = static_cast<int>(v); }},
+      {"search_interval", [&](double v) { t.search_interval = static_cast<int>(v); }},
       {"per_line", [&](double v) { t.aim.per_line = v, t.tripod.per_line = v; }},
       {"again_fraction", [&](double v) { t.again.fraction = v; }},
       {"again_rival", [&](double v) { t.again.rival = v; }},

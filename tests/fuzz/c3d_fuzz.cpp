@@ -31,12 +31,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     }
     // What would go along into another file.
-    marey::format::motion::C3dAuxiliary next_to(std::as_bytes(std::span(data, size)), {.path = "file", .rotated = true});
-    check(next_to.channels() * next_to.samples() * 2 <= size);
-    check(next_to.frame(last).size() == next_to.channels() * next_to.samples());
+    marey::format::motion::C3dAuxiliary auxiliary(std::as_bytes(std::span(data, size)), {.path = "file", .rotated = true});
+    check(auxiliary.channels() * auxiliary.samples() * 2 <= size);
+    check(auxiliary.frame(last).size() == auxiliary.channels() * auxiliary.samples());
     for (const char* group : {"ANALOG", "FORCE_PLATFORM", "EVENT"}) {
       marey::format::motion::C3dSection section;
-      for (const auto& parameter : next_to.group(group, marey::format::UpAxis::z)) section.copy(parameter);
+      for (const auto& parameter : auxiliary.group(group, marey::format::UpAxis::z)) section.copy(parameter);
     }
   } catch (const marey::Error& error) {
     const std::string_view message = error.what();

@@ -25,7 +25,7 @@ struct Fit {
   double odd = 0.1;
   double variance = 36;
   double log_likelihood = -std::numeric_limits<double>::infinity();
-  std::vector<std::vector<double>> owner;
+  std::vector<std::vector<double>> membership;
 };
 
 class Fitter {
@@ -84,16 +84,16 @@ class Fitter {
   /// Whose everything is under the fit, and how likely that makes the data.
   void assess(Fit& fit) const {
     fit.log_likelihood = 0;
-    fit.owner.assign(points_.size(), {});
+    fit.membership.assign(points_.size(), {});
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double variance = fit.variance + own_[i];
       double sum = fit.odd / all_colours;
       for (std::size_t k = 0; k < fit.centres.size(); ++k) {
         const double distance = (points_[i] - fit.centres[k]).squaredNorm() / variance;
-        fit.owner[i].push_back(fit.fractions[k] * std::exp(-distance / 2) * std::pow(2 * std::numbers::pi * variance, -1.5));
-        sum += fit.owner[i].back();
+        fit.membership[i].push_back(fit.fractions[k] * std::exp(-distance / 2) * std::pow(2 * std::numbers::pi * variance, -1.5));
+        sum += fit.membership[i].back();
       }
-      for (double& probability : fit.owner[i]) probability /= sum;
+      for (double& probability : fit.membership[i]) probability /= sum;
       fit.log_likelihood += weights_[i] * std::log(sum);
     }
   }
@@ -106,7 +106,7 @@ class Fitter {
       double mass = 0, certain = 0;
       Vector<3> sum = Vector<3>::Zero();
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double mine = weights_[i] * fit.owner[i][k];
+        const double mine = weights_[i] * fit.membership[i][k];
         mass += mine;
         const double weight = mine / (fit.variance + own_[i]);  // who was measured badly says less of the centre
         certain += weight;
@@ -117,7 +117,7 @@ class Fitter {
       if (certain <= 0) continue;
       fit.centres[k] = sum / certain;
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double mine = weights_[i] * fit.owner[i][k];
+        const double mine = weights_[i] * fit.membership[i][k];
         squares += mine * std::max(0.0, (points_[i] - fit.centres[k]).squaredNorm() / 3 - own_[i]);
         count += mine;
       }
@@ -153,9 +153,9 @@ ColourMixture find_colours(std::span<const ColourObserved> detected, int maximum
     mixture.kinds.push_back({colour_at(best->centres[k], std::sqrt(best->variance) / thinned), best->fractions[k]});
   }
   mixture.odd = best->odd;
-  for (const std::vector<double>& probabilities : best->owner) {
-    mixture.owner.emplace_back();
-    for (const std::size_t k : order) mixture.owner.back().push_back(probabilities[k]);
+  for (const std::vector<double>& probabilities : best->membership) {
+    mixture.membership.emplace_back();
+    for (const std::size_t k : order) mixture.membership.back().push_back(probabilities[k]);
   }
   return mixture;
 }

@@ -27,7 +27,7 @@ struct ColourMixture {
   };
   std::vector<Kind> kinds;                 ///< largest share first
   double odd = 0;                          ///< share of those who are of none
-  std::vector<std::vector<double>> owner;  ///< of each one given, the probability of each kind; the remainder to 1 is odd
+  std::vector<std::vector<double>> membership;  ///< of each one given, the probability of each kind; the remainder to 1 is odd
 };
 
 /// At most `most` kinds. None where nothing was seen.

@@ -102,7 +102,7 @@ double hull_area(std::vector<Vector<2>> points) {
 }
 
 std::vector<TeamMeasure> measure_teams(const Recording& recording, const std::vector<PersonMeasure>& people) {
-  constexpr std::size_t lowest_count = 3;
+  constexpr std::size_t min_positions = 3;
   std::map<std::string, TeamMeasure> teams;
   for (const PersonMeasure& person : people) {
     if (person.team.empty()) continue;
@@ -114,7 +114,7 @@ std::vector<TeamMeasure> measure_teams(const Recording& recording, const std::ve
   std::map<std::string, std::vector<Vector<2>>> standing;
   const auto close_instant = [&] {
     for (auto& [name, locations] : standing) {
-      if (locations.size() >= lowest_count) {
+      if (locations.size() >= min_positions) {
         TeamMeasure& team = teams[name];
         Vector<2> low = locations.front(), high = low, sum = Vector<2>::Zero();
         for (const Vector<2>& location : locations) low = low.cwiseMin(location), high = high.cwiseMax(location), sum += location;

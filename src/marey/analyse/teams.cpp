@@ -95,24 +95,24 @@ std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::v
 
 /// What cameras and light make of grey: the colour of the kind of people that has least, if that is little enough to be it.
 Appearance layout_of(const ColourMixture& mixture) {
-  Appearance channel_layout{.lightness = 0};
+  Appearance tint{.lightness = 0};
   float minimum = max_channel_layout;
   for (const ColourMixture::Kind& kind : mixture.kinds) {
     const float chroma = std::hypot(kind.colour.a, kind.colour.b);
     if (chroma >= minimum) continue;
     minimum = chroma;
-    channel_layout.a = kind.colour.a;
-    channel_layout.b = kind.colour.b;
+    tint.a = kind.colour.a;
+    tint.b = kind.colour.b;
   }
-  return channel_layout;
+  return tint;
 }
 
 /// Names for teams that the user has not named: by colour, distinguished by lightness where they have the same.
-void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& channel_layout) {
+void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& tint) {
   for (Teams::Team& team : teams) {
     Appearance colour = team.colour;
-    colour.a -= channel_layout.a;
-    colour.b -= channel_layout.b;
+    colour.a -= tint.a;
+    colour.b -= tint.b;
     team.name = name_of_colour(colour);
   }
   if (teams.size() < 2 || teams[0].name != teams[1].name) return;
@@ -198,7 +198,7 @@ class Finder {
       Teams::Member& member = teams_.members[static_cast<std::size_t>(candidates_.people[i])];
       for (std::size_t t = 0; t < kinds.size(); ++t) {
         if (kinds[t] >= mixture_.kinds.size()) continue;
-        const double probability = mixture_.owner[i][kinds[t]];
+        const double probability = mixture_.membership[i][kinds[t]];
         if (probability <= member.confidence) continue;
         member.confidence = probability;
         member.team = static_cast<int>(t);
@@ -245,10 +245,10 @@ class Finder {
 
   /// How many wear what this one wears: of all people's time.
   double fraction_of_kind(std::size_t candidate) const {
-    const std::vector<double>& owner = mixture_.owner[candidate];
-    const auto likeliest = std::max_element(owner.begin(), owner.end());
-    if (likeliest == owner.end() || *likeliest < 0.5) return 0;
-    return mixture_.kinds[static_cast<std::size_t>(likeliest - owner.begin())].fraction;
+    const std::vector<double>& membership = mixture_.membership[candidate];
+    const auto likeliest = std::max_element(membership.begin(), membership.end());
+    if (likeliest == membership.end() || *likeliest < 0.5) return 0;
+    return mixture_.kinds[static_cast<std::size_t>(likeliest - membership.begin())].fraction;
   }
 
   const Recording& recording_;

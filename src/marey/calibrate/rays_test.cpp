@@ -55,11 +55,11 @@ TEST(Rays, NoPointNearbyIsNearerToAllLines) {
 
 TEST(Rays, NothingWhereThereIsNoPoint) {
   const SightLine one{{{0, 0, 0}, {0, 0, 1}}, 1e-3};
-  const SightLine next_to{{{1, 0, 0}, {0, 0, 1}}, 1e-3};
+  const SightLine parallel{{{1, 0, 0}, {0, 0, 1}}, 1e-3};
   const SightLine away{{{1, 0, 0}, Vector<3>(1, 0, -1).normalized()}, 1e-3};
   EXPECT_FALSE(intersection_point({})) << "no line";
   EXPECT_FALSE(intersection_point(std::vector{one})) << "one line";
-  EXPECT_FALSE(intersection_point(std::vector{one, next_to})) << "parallel";
+  EXPECT_FALSE(intersection_point(std::vector{one, parallel})) << "parallel";
   EXPECT_FALSE(intersection_point(std::vector{one, away})) << "behind both";
 }
 

@@ -104,15 +104,15 @@ void Mp4File::close(Output& output) const {
 
 void Mp4File::finish() {
   close(fragments_);
-  const bool at_position = keep_ == MovieWriter::Keep::always;
-  const std::string ordinary = at_position ? file_.temporary_path() : file_.further_temporary_path();
+  const bool directly = keep_ == MovieWriter::Keep::always;
+  const std::string ordinary = directly ? file_.temporary_path() : file_.further_temporary_path();
   std::error_code ignored;
   try {
     rewrite(ordinary);
-    if (!at_position) std::filesystem::rename(ordinary, file_.temporary_path());
+    if (!directly) std::filesystem::rename(ordinary, file_.temporary_path());
   } catch (const std::exception&) {  // no room for both: the fragments are the whole video too, only slower to seek in
     std::filesystem::remove(ordinary, ignored);
-    if (at_position) return;
+    if (directly) return;
   }
   file_.finish();
 }

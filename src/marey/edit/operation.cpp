@@ -141,8 +141,8 @@ Operation parsed(Kind kind, const json& payload) {
   for (const json& gap : payload.value("gaps", json::array())) operation.gaps.push_back(gap_of(gap));
   for (const json& cutoff : payload.value("cutoffs_hz", json::array())) operation.cutoffs_hz.push_back(positive(cutoff));
   if (payload.contains("body")) operation.body = BodyId{id_of(payload["body"])};
-  const auto [lowest_count, maximum] = tracks_required(kind);
-  const bool whole = operation.tracks.size() >= lowest_count && operation.tracks.size() <= maximum &&
+  const auto [minimum, maximum] = tracks_required(kind);
+  const bool whole = operation.tracks.size() >= minimum && operation.tracks.size() <= maximum &&
                      (kind != Kind::split || (operation.initiated && operation.frames)) &&
                      (kind != Kind::fill || !operation.gaps.empty()) && (kind != Kind::turn || operation.body) &&
                      (kind != Kind::filter || operation.cutoffs_hz.size() == operation.tracks.size());

@@ -29,8 +29,8 @@ std::string shown_source(std::string_view source) {
   return std::string(source.substr(0, host + 3)) + std::string(source.substr(user + 1));
 }
 
-std::string source_next_to(const std::string& folder, const std::string& source) {
-  if (source.starts_with(kPlayed)) return std::string(kPlayed) + source_next_to(folder, source.substr(kPlayed.size()));
+std::string source_in_folder(const std::string& folder, const std::string& source) {
+  if (source.starts_with(kPlayed)) return std::string(kPlayed) + source_in_folder(folder, source.substr(kPlayed.size()));
   if (folder.empty() || source.empty() || !scheme_of(source).empty() || source.find("://") != std::string::npos) return source;
   return (std::filesystem::path(folder) / source).lexically_normal().string();
 }

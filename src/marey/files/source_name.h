@@ -14,7 +14,7 @@ std::string shown_source(std::string_view source);
 
 /// The source of a rig file in `folder`, as seen from where the program runs: a relative path lies in the folder, also one that is
 /// played; what names a device or a host is not a path.
-std::string source_next_to(const std::string& folder, const std::string& source);
+std::string source_in_folder(const std::string& folder, const std::string& source);
 
 /// The path of a source that is a path, also of one that is played, without its options; empty for a device and a host.
 std::string path_of_source(std::string_view source);

@@ -19,12 +19,12 @@ TEST(SourceName, APasswordIsNotShown) {
 }
 
 TEST(SourceName, PathsLieBesideTheRigAndDevicesDoNot) {
-  EXPECT_EQ(source_next_to("rigs", "left.avi"), "rigs/left.avi");
-  EXPECT_EQ(source_next_to("rigs", "/films/left.avi"), "/films/left.avi");
-  EXPECT_EQ(source_next_to("rigs", "play:left.avi?loop"), "play:rigs/left.avi?loop");
-  EXPECT_EQ(source_next_to("rigs", "v4l2:/dev/video0"), "v4l2:/dev/video0");
-  EXPECT_EQ(source_next_to("rigs", "gige:Basler-21"), "gige:Basler-21");
-  EXPECT_EQ(source_next_to("", "left.avi"), "left.avi");
+  EXPECT_EQ(source_in_folder("rigs", "left.avi"), "rigs/left.avi");
+  EXPECT_EQ(source_in_folder("rigs", "/films/left.avi"), "/films/left.avi");
+  EXPECT_EQ(source_in_folder("rigs", "play:left.avi?loop"), "play:rigs/left.avi?loop");
+  EXPECT_EQ(source_in_folder("rigs", "v4l2:/dev/video0"), "v4l2:/dev/video0");
+  EXPECT_EQ(source_in_folder("rigs", "gige:Basler-21"), "gige:Basler-21");
+  EXPECT_EQ(source_in_folder("", "left.avi"), "left.avi");
 }
 
 TEST(SourceName, APathIsFoundInWhatIsPlayed) {

@@ -49,8 +49,8 @@ void expect_the_same(const FilterOptions& own, const FilterOptions& custom) {
     ASSERT_EQ(a.position(), b.position()) << k;
     ASSERT_EQ(a.velocity(), b.velocity()) << k;
     ASSERT_EQ(a.covariance(), b.covariance()) << k;
-    const Vector<D> next_to = location + Vector<D>::Constant(3);
-    ASSERT_NEAR(a.gate_distance(next_to, R), b.gate_distance(next_to, R), 1e-12 * a.gate_distance(next_to, R)) << k;
+    const Vector<D> shifted = location + Vector<D>::Constant(3);
+    ASSERT_NEAR(a.gate_distance(shifted, R), b.gate_distance(shifted, R), 1e-12 * a.gate_distance(shifted, R)) << k;
     if (k == 30) b = AnyFilter<D>(b);
   }
 }

@@ -8,7 +8,7 @@
 namespace marey::filter {
 namespace {
 
-constexpr std::size_t kMinCount = 10;
+constexpr std::size_t kMinInnovations = 10;
 
 struct Scored {
   double log_likelihood = 0;
@@ -115,7 +115,7 @@ std::optional<NoiseFit> fit_noise(std::span<const MeasuredPath<D>> paths) {
   const auto ratio = [&](double exponent) { return unit * std::exp(exponent); };
   const double exponent = maximise([&](double e) { return score<D>(paths, ratio(e)).log_likelihood; }, -25, 20, 30);
   const Scored best = score<D>(paths, ratio(exponent));
-  if (best.innovations < kMinCount || !(best.measurement_variance > 0)) return std::nullopt;
+  if (best.innovations < kMinInnovations || !(best.measurement_variance > 0)) return std::nullopt;
 
   NoiseFit fit;
   fit.measurement_sigma = std::sqrt(best.measurement_variance);

@@ -62,12 +62,12 @@ class HumanEvaluate {
   }
 
   /// The parabola at time `at` through the places of a segment of time; nothing if they are too few or lie to one side.
-  std::optional<LocalMotion> motion_at(double at, double from, double to, std::size_t lowest_count) const {
+  std::optional<LocalMotion> motion_at(double at, double from, double to, std::size_t min_count) const {
     const auto earlier = [](const TimedPosition& one, double sought) { return one.time < sought; };
     const auto begin = std::lower_bound(locations_.begin(), locations_.end(), from - 1e-9, earlier);
     const auto end = std::lower_bound(begin, locations_.end(), to + 1e-9, earlier);
     const auto count = static_cast<std::size_t>(end - begin);
-    if (count < lowest_count || std::prev(end)->time - begin->time < (to - from) / 2) return std::nullopt;
+    if (count < min_count || std::prev(end)->time - begin->time < (to - from) / 2) return std::nullopt;
     Matrix<6> N = Matrix<6>::Zero();
     Vector<6> v = Vector<6>::Zero();
     for (auto one = begin; one != end; ++one) {

@@ -94,7 +94,7 @@ struct FileInfo {
   std::optional<std::int64_t> head;         ///< of the edits
   std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing if only reading would reveal it
   std::optional<UpAxis> up;                 ///< what the file itself says of its world, where it says anything
-  AuxiliaryData next_to = {};               ///< of a C3D file
+  AuxiliaryData companions = {};               ///< of a C3D file
 };
 
 /// A file that is read instant by instant. Units and axes are Marey's.
@@ -165,7 +165,7 @@ struct Format {
   /// A skeleton's motion: y is up in it unless the user says otherwise.
   bool skeleton = false;
   /// Files come in pairs: the endings of a name and of the file that is beside it.
-  std::vector<std::pair<std::string_view, std::string_view>> next_to = {};
+  std::vector<std::pair<std::string_view, std::string_view>> companions = {};
 
   bool is_read() const { return open != nullptr || read != nullptr || read_rig != nullptr || facts != nullptr; }
   bool is_written() const { return create != nullptr || write != nullptr || write_rig != nullptr; }

@@ -89,7 +89,7 @@ class WholeReader : public FileReader {
              .head = recording.head,
              .frame_count = reader_.instant_count(),
              .up = {},
-             .next_to = {}};
+             .auxiliary = {}};
   }
   const FileInfo& info() const override { return info_; }
   std::optional<Instant> next() override { return reader_.next(); }
@@ -261,13 +261,13 @@ std::optional<std::string> poses_lost(const RecordingHeader& header, const std::
       format.title, header.bodies.size(), header.bodies.size() == 1 ? "body" : "bodies");
 }
 
-std::optional<std::string> next_to_lost(const AuxiliaryData& next_to, const std::string& path, const Format& format) {
-  if (!next_to.any() || format.auxiliary_data) return std::nullopt;
-  const std::string channels = next_to.channels > 0 ? fmt::format("{} analog channels (forces, EMG)", next_to.channels) : "";
-  const std::string events = next_to.events > 0 ? fmt::format("{} events", next_to.events) : "";
+std::optional<std::string> auxiliary_lost(const AuxiliaryData& auxiliary, const std::string& path, const Format& format) {
+  if (!auxiliary.any() || format.auxiliary_data) return std::nullopt;
+  const std::string channels = auxiliary.channels > 0 ? fmt::format("{} analog channels (forces, EMG)", auxiliary.channels) : "";
+  const std::string events = auxiliary.events > 0 ? fmt::format("{} events", auxiliary.events) : "";
   return fmt::format("{}: {} holds none of the {}{}{} of {}; they go along into .c3d alone{}", path, format.title, channels,
-                     channels.empty() || events.empty() ? "" : " and ", events, next_to.path,
-                     format.name == "take" && next_to.channels > 0 ? ", but for force plates" : "");
+                     channels.empty() || events.empty() ? "" : " and ", events, auxiliary.path,
+                     format.name == "take" && auxiliary.channels > 0 ? ", but for force plates" : "");
 }
 
 }  // namespace marey::format

@@ -42,7 +42,7 @@ std::unique_ptr<Sink> create_recording(const std::string& path, const Format& fo
 std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format);
 
 /// The same of what stood beside the points of a file that was read.
-std::optional<std::string> next_to_lost(const AuxiliaryData& next_to, const std::string& path, const Format& format);
+std::optional<std::string> auxiliary_lost(const AuxiliaryData& auxiliary, const std::string& path, const Format& format);
 
 /// Writes a recording that is whole, and says what the format could not hold.
 std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match,

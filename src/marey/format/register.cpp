@@ -275,9 +275,9 @@ std::string first_ending(const Format& format) {
   return endings.empty() ? std::string() : std::string(endings.front());
 }
 
-std::string file_next_to(const std::string& path) {
+std::string companion_file(const std::string& path) {
   for (const Format& format : formats()) {
-    for (const auto& [ending, other] : format.next_to) {
+    for (const auto& [ending, other] : format.companions) {
       if (path.ends_with(ending)) return path.substr(0, path.size() - ending.size()).append(other);
     }
   }

@@ -50,7 +50,7 @@ std::string shown_endings(const Format& format);
 std::string first_ending(const Format& format);
 
 /// A name's other file, where files of that ending come in pairs: data read or written without being named.
-std::string file_next_to(const std::string& path);
+std::string companion_file(const std::string& path);
 
 /// The table of docs/formats.md: Markdown, a row a format.
 std::string format_table();

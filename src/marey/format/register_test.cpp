@@ -42,8 +42,8 @@ TEST(Register, AnEndingIsOfTheFormatThatHoldsTheContent) {
   EXPECT_EQ(format_to_write("B.MAREY", "", Content::image).name, "take");
   EXPECT_EQ(format_to_write("b.txt", "csv", Content::ground).name, "ground");
   EXPECT_EQ(format_to_write("b.qca.txt", "", Content::rig).name, "qualisys");
-  EXPECT_EQ(file_next_to("b_home.csv"), "b_away.csv");
-  EXPECT_EQ(file_next_to("b.csv"), "");
+  EXPECT_EQ(companion_file("b_home.csv"), "b_away.csv");
+  EXPECT_EQ(companion_file("b.csv"), "");
 }
 
 std::string refusal(const std::string& path, const std::string& name, Content content) {

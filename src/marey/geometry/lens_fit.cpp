@@ -89,7 +89,7 @@ Parameters step_of(const Trial& trial, const std::vector<Sight>& sights, const s
 
 std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(const Vector<2>& pixel)>& direction, cv::Size size,
                                   const BrownLens& start, const BrownFitOptions& options) {
-  constexpr int kColumns = 24, kRows = 18, kMinCount = 20, kMaxSteps = 200;
+  constexpr int kColumns = 24, kRows = 18, kMinSights = 20, kMaxSteps = 200;
   std::vector<Sight> sights;
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
@@ -98,7 +98,7 @@ std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(c
       if (ahead && ahead->z() > 0.05 * ahead->norm()) sights.push_back({pixel, *ahead / ahead->z()});
     }
   }
-  if (std::ssize(sights) < kMinCount) return std::nullopt;
+  if (std::ssize(sights) < kMinSights) return std::nullopt;
 
   std::array<bool, kParameters> held{};
   for (int i = options.coefficients; i < BrownLens::coefficients; ++i) held[static_cast<std::size_t>(4 + i)] = true;

@@ -27,7 +27,7 @@ class LearnedNoise {
     for (const Located& located : found.points) {
       if (located.point.rays > 2) ratios_.push_back(located.point.chi_square / (2 * located.point.rays - 3));
     }
-    if (std::ssize(ratios_) < kMinCount) return false;
+    if (std::ssize(ratios_) < kMinPoints) return false;
     const double median = geometry::median(ratios_);
     double sum = 0;
     int count = 0;
@@ -39,7 +39,7 @@ class LearnedNoise {
     std::nth_element(ratios_.begin(), tail, ratios_.end());
     const double ratio = std::max(sum / count, *tail / kTail);
     // The sums of squares hold the blobs' own noise too; where that is small, as it is, their root is the factor to be applied.
-    const double required = std::clamp(px_ * std::sqrt(ratio), kMinValue, kMaxCount);
+    const double required = std::clamp(px_ * std::sqrt(ratio), kMinNoise, kMaxNoise);
     const double fraction = learned_ ? kFraction : 1;
     learned_ = true;
     const double before = px_;
@@ -48,8 +48,8 @@ class LearnedNoise {
   }
 
  private:
-  static constexpr double kFirst = 0.5, kMinValue = 0.03, kMaxCount = 2;  // px
-  static constexpr int kMinCount = 4;                                     // points
+  static constexpr double kFirst = 0.5, kMinNoise = 0.03, kMaxNoise = 2;  // px
+  static constexpr int kMinPoints = 4;                                     // points
   static constexpr double kFarOff = 6;                                    // times the median
   static constexpr double kTail = 2.08;      // by definition: what 90 % of three rays' ratios stay below, of a plain Gaussian
   static constexpr double kFraction = 0.02;  // a frame

@@ -9,7 +9,7 @@ namespace marey::reconstruct {
 namespace {
 
 /// 7 m above the ground, 14 m before a touchline, facing across a pitch; x along it, y away from the camera.
-Camera next_to_the_pitch(double tilt_degrees = 12) {
+Camera camera_by_touchline(double tilt_degrees = 12) {
   const double tilt = tilt_degrees * std::numbers::pi / 180;
   Matrix<3> camera_from_world;
   camera_from_world.row(0) = Vector<3>(1, 0, 0);
@@ -52,7 +52,7 @@ double squared_distance(const Observation<2>& detected, const Vector<2>& truth) 
 }
 
 TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
-  const Camera camera = next_to_the_pitch();
+  const Camera camera = camera_by_touchline();
   const Camera straight(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera.camera_from_world(), camera.size());
   for (double y = 6; y <= 70; y += 8) {
     const Vector<2> location(y / 4, y);
@@ -66,7 +66,7 @@ TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
 }
 
 TEST(PlacePeople, OnACrownedPitchPeopleStandOnTheCrown) {
-  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, next_to_the_pitch().camera_from_world(), {1920, 1080});
+  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera_by_touchline().camera_from_world(), {1920, 1080});
   const geometry::GroundSurface crowned{.middle = {0, 34}, .half = {52.5, 34}, .across = 0.3, .along = 0.2};
   for (double y = 6; y <= 62; y += 8) {
     const Vector<2> location(y / 4, y);
@@ -90,7 +90,7 @@ TEST(PlacePeople, OnACrownedPitchPeopleStandOnTheCrown) {
 }
 
 TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
-  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, next_to_the_pitch().camera_from_world(), {1920, 1080});
+  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera_by_touchline().camera_from_world(), {1920, 1080});
   for (double y = 6; y <= 70; y += 8) {
     const Vector<2> from_camera = Vector<2>(y / 4, y) - Vector<2>(0, -14);
     const Vector<2> location(y / 4, y), tip = location - 0.1 * from_camera.normalized();
@@ -108,7 +108,7 @@ TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
 
 TEST(PlacePeople, SaysHowFarItMayBeWrong) {
   const LocalisePeopleOptions options;
-  const Camera bent = next_to_the_pitch();
+  const Camera bent = camera_by_touchline();
   const Camera straight(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, bent.camera_from_world(), bent.size());
   room::Random random(1);
   for (const double y : {8.0, 30.0, 65.0}) {
@@ -139,7 +139,7 @@ TEST(PlacePeople, SaysHowFarItMayBeWrong) {
 }
 
 TEST(PlacePeople, TheHeadMakesThePlaceSurer) {
-  const Camera camera = next_to_the_pitch();
+  const Camera camera = camera_by_touchline();
   const Camera straight(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera.camera_from_world(), camera.size());
   const Box box = box_of(straight, {5, 50});
   const auto whole = located(box, GroundView(straight));
@@ -148,7 +148,7 @@ TEST(PlacePeople, TheHeadMakesThePlaceSurer) {
 }
 
 TEST(PlacePeople, LocalisesOccludedLegsByHead) {
-  const Camera camera = next_to_the_pitch();
+  const Camera camera = camera_by_touchline();
   const Vector<2> behind(2, 24), before(2.1, 20);
   std::vector<Detection> detected(2);
   detected[0].box = box_of(camera, behind);
@@ -166,7 +166,7 @@ TEST(PlacePeople, LocalisesOccludedLegsByHead) {
 }
 
 TEST(PlacePeople, MarksTruncatedBoxAsUncertain) {
-  const Camera camera = next_to_the_pitch(35);
+  const Camera camera = camera_by_touchline(35);
   const GroundView view(camera);
   const Vector<2> location(0, -2);
   Box box = box_of(camera, location);
@@ -186,7 +186,7 @@ TEST(PlacePeople, MarksTruncatedBoxAsUncertain) {
 }
 
 TEST(PlacePeople, ASharedRegionCoversItsPeople) {
-  const Camera camera = next_to_the_pitch();
+  const Camera camera = camera_by_touchline();
   const Vector<2> left(-0.5, 30), right(0.5, 30.4);
   const Box both = geometry::hull(box_of(camera, left), box_of(camera, right));
   const auto detected = located(both, GroundView(camera), 1);
@@ -197,7 +197,7 @@ TEST(PlacePeople, ASharedRegionCoversItsPeople) {
 }
 
 TEST(PlacePeople, RejectsPositionsAboveHorizon) {
-  const Camera camera = next_to_the_pitch(2);
+  const Camera camera = camera_by_touchline(2);
   EXPECT_FALSE(located({900, 10, 20, 60}, GroundView(camera)));
   EXPECT_FALSE(located({900, 900, 0, 60}, GroundView(camera)));
 }

@@ -21,13 +21,13 @@ struct Crossing {
 };
 
 /// Where two straight elements' lines meet in space.
-std::optional<Vector<3>> close_encounter(const geometry::StraightElement& a, const geometry::StraightElement& b) {
+std::optional<Vector<3>> intersection(const geometry::StraightElement& a, const geometry::StraightElement& b) {
   const Vector<3> u = a.to - a.from, v = b.to - b.from, normal = u.cross(v), between = b.from - a.from;
   if (normal.norm() < 1e-9 || std::abs(between.dot(normal)) > 1e-6 * normal.norm()) return std::nullopt;
   return Vector<3>(a.from + u * (between.cross(v).dot(normal) / normal.squaredNorm()));
 }
 
-std::optional<Vector<2>> close_encounter(const ElementSight& a, const ElementSight& b) {
+std::optional<Vector<2>> intersection(const ElementSight& a, const ElementSight& b) {
   const Vector<3> meets =
       a.first.homogeneous().cross(a.last.homogeneous()).cross(b.first.homogeneous().cross(b.last.homogeneous()));
   const double sine =
@@ -45,8 +45,8 @@ std::vector<Crossing> crossings_of(std::span<const ElementSight> sights) {
       const auto* a = std::get_if<geometry::StraightElement>(&sights[i].model.shape);
       const auto* b = std::get_if<geometry::StraightElement>(&sights[k].model.shape);
       if (a == nullptr || b == nullptr) continue;
-      const auto location = close_encounter(*a, *b);
-      const auto pixel = close_encounter(sights[i], sights[k]);
+      const auto location = intersection(*a, *b);
+      const auto pixel = intersection(sights[i], sights[k]);
       if (location && pixel) result.push_back({*location, *pixel});
     }
   }

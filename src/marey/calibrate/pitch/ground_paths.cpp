@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kReach_s = 0.5;      // of the parabola, to both sides
 constexpr double kNear_s = 0.25;      // something must have been seen so near on both sides
-constexpr std::size_t kMinValue = 4;  // samples that make a parabola
+constexpr std::size_t kMinSamples = 4;  // samples that make a parabola
 constexpr double kIndependent = 2;    // errors of a second's samples hang together: they are worth this many
 
 /// The parabola through `samples` about `time_s`; nothing if they do not hold it.
 std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples, double time_s) {
-  if (samples.size() < kMinValue || samples.front().time_s > time_s - kNear_s || samples.back().time_s < time_s + kNear_s)
+  if (samples.size() < kMinSamples || samples.front().time_s > time_s - kNear_s || samples.back().time_s < time_s + kNear_s)
     return std::nullopt;
   geometry::LocalPolynomial<3, 2> parabola;
   Matrix<2> noise = Matrix<2>::Zero();
@@ -39,7 +39,7 @@ std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples
 
 SmoothPath::SmoothPath(const GroundPath& path) {
   const auto& samples = path.samples;
-  if (samples.size() < kMinValue) return;
+  if (samples.size() < kMinSamples) return;
   begin_s_ = samples.front().time_s;
   const auto steps = static_cast<std::size_t>((samples.back().time_s - begin_s_) / kStep_s) + 1;
   std::size_t first = 0, end = 0;

@@ -166,9 +166,9 @@ void fit_together(const std::vector<PitchView>& views, const PitchCalibrationOpt
   const auto round = [&] {
     std::vector<PitchEvidence> evidence;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      const PitchViewResult& almost = result.views[i];
-      evidence.push_back({almost.camera, points_in_world(views[i], world_from_ground), almost.lines,
-                          sightings_of(views[i].lines, world_from_ground, GroundView(almost.camera, ground))});
+      const PitchViewResult& initial = result.views[i];
+      evidence.push_back({initial.camera, points_in_world(views[i], world_from_ground), initial.lines,
+                          sightings_of(views[i].lines, world_from_ground, GroundView(initial.camera, ground))});
     }
     result.fit = fit_pitch(evidence, ground, options.known);
     ground = result.fit.ground;

@@ -82,13 +82,13 @@ LensPrior prior_of(cv::Size size, bool free_lens) {
 }
 
 constexpr double kClickSigmaAlone = 3;         // px: how well people click
-constexpr double kClickSigmaNextToLines = 15;  // px: where lines are seen, clicks only keep the whole in place
+constexpr double kClickSigmaWithLines = 15;  // px: where lines are seen, clicks only keep the whole in place
 constexpr double kPaintSigmaMetres = 0.04;     // m: how well it was laid, and how level the ground is
 
 double solve(CameraNumbers& numbers, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
              const std::vector<LineSighting>& sightings, bool free_lens) {
   ceres::Problem problem;
-  const double click = sightings.empty() ? kClickSigmaAlone : kClickSigmaNextToLines;
+  const double click = sightings.empty() ? kClickSigmaAlone : kClickSigmaWithLines;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!inlier[i]) continue;
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointError, 2, CameraNumbers::count>(new PointError{points[i], click}),

@@ -136,8 +136,8 @@ std::vector<ObservedPosition> pieces_of(const std::vector<LineSighting>& painted
 }
 
 ObservedPitch observed_in(const PitchEvidence& evidence, const GroundSurface& ground) {
-  const GroundView view(evidence.almost, ground);
-  ObservedPitch detected{evidence.almost.size(), {}, pieces_of(evidence.painted, view), {}};
+  const GroundView view(evidence.initial, ground);
+  ObservedPitch detected{evidence.initial.size(), {}, pieces_of(evidence.painted, view), {}};
   for (const PitchPoint& point : evidence.points)
     detected.clicks.push_back({point.ground, ground.relative(point.ground), point.pixel, whitener(view, point.ground), -1});
   for (const LineSighting& line : evidence.clicked)
@@ -363,7 +363,7 @@ PitchFit fit_pitch(const std::vector<PitchEvidence>& evidence, const GroundSurfa
   PitchState start{{}, ground.terms()};
   for (const PitchEvidence& one : evidence) {
     detected.push_back(observed_in(one, ground));
-    start.cameras.push_back(CameraNumbers::of(one.almost));
+    start.cameras.push_back(CameraNumbers::of(one.initial));
   }
   Noise noise;
   PitchModel richest{.lens = kLenses.back(), .ground = known == GroundKnown::nothing ? kGrounds.back() : Free{}, .state = start};

@@ -95,10 +95,10 @@ class Sampler {
       return std::nullopt;
     constexpr double kStep = 0.05;  // m
     const Vector<2> aside(-tangent.y(), tangent.x());
-    const auto on = pixel(ground + kStep * tangent), next_to = pixel(ground + kStep * aside);
-    if (!on || !next_to) return std::nullopt;
+    const auto on = pixel(ground + kStep * tangent), aside_pixel = pixel(ground + kStep * aside);
+    if (!on || !aside_pixel) return std::nullopt;
     const Vector<2> along = (*on - *here).normalized(), normal(-along.y(), along.x());
-    const double scale = std::abs(normal.dot(*next_to - *here)) / kStep;
+    const double scale = std::abs(normal.dot(*aside_pixel - *here)) / kStep;
     return Crossing{*here, normal, scale * geometry::kPitchLineWidth, scale};
   }
 

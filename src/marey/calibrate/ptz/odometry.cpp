@@ -127,7 +127,7 @@ OdometryFit fit_heading(const geometry::Tripod& tripod, const Matches& matches, 
 
 std::optional<Rotated> Odometry::fit(const geometry::Tripod& tripod, const std::vector<Match>& matches) {
   const geometry::Heading& start = chains_.front();
-  if (std::ssize(matches) < options_.lowest_count) return std::nullopt;
+  if (std::ssize(matches) < options_.min_corners) return std::nullopt;
   const int tracked = static_cast<int>(matches.size());
   std::vector<Match> moving;
   for (const Match& match : matches) {
@@ -135,16 +135,16 @@ std::optional<Rotated> Odometry::fit(const geometry::Tripod& tripod, const std::
   }
   OdometryFit best = fit_heading(tripod, matches, start, size_, options_.agree_px);
   std::optional<Vector<3>> otherwise;
-  if (std::ssize(moving) >= options_.lowest_count && moving.size() < matches.size()) {
+  if (std::ssize(moving) >= options_.min_corners && moving.size() < matches.size()) {
     OdometryFit other = fit_heading(tripod, moving, start, size_, options_.agree_px);
     const auto still = static_cast<double>(matches.size() - moving.size());
-    if (other.agreeing >= options_.lowest_count && other.agreeing >= 0.6 * static_cast<double>(moving.size())) {
+    if (other.agreeing >= options_.min_corners && other.agreeing >= 0.6 * static_cast<double>(moving.size())) {
       if (other.agreeing > kMovingFraction * still) std::swap(best, other);
       const Vector<2> apart = (best.heading - other.heading).head<2>();
       if (std::exp(start.log_focal) * size_.width / 2.0 * apart.norm() > options_.agree_px) otherwise = other.heading;
     }
   }
-  if (best.agreeing < options_.lowest_count || best.agreeing < options_.fraction * tracked) return std::nullopt;
+  if (best.agreeing < options_.min_corners || best.agreeing < options_.fraction * tracked) return std::nullopt;
   // Each group's step is from where the nearer of the two was before.
   const auto step_to = [this](const Vector<3>& heading) {
     const auto nearest = std::min_element(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) {
@@ -196,7 +196,7 @@ std::optional<Rotated> Odometry::step(const cv::Mat& luma, const geometry::Tripo
       std::exp(chained.log_focal) / 2 * std::hypot(chained.pan - reference_heading_.pan, chained.tilt - reference_heading_.tilt);
   const bool spent = age_ >= options_.longest || travelled > kMaxTrajectory ||
                      std::abs(chained.log_focal - reference_heading_.log_focal) > kMaxZoom || 2 * corners_.size() < begun_with_ ||
-                     rotated->agreeing < 3 * options_.lowest_count;
+                     rotated->agreeing < 3 * options_.min_corners;
   if (spent) refer(tripod, geometry::Heading::of(last.as_vector() + rotated->by));
   return rotated;
 }

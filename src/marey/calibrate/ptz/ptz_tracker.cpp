@@ -115,7 +115,7 @@ std::optional<Aim> PtzTracker::held(const cv::Mat& luma) const {
   if (!aim_) return std::nullopt;
   const Aim wide{aim_->heading, aim_->covariance + kFlowLost * kFlowLost * Matrix<3>::Identity()};
   const Correction detected = correct_aim(luma, tripod_, lines_, wide, {}, options_.aim);
-  const bool there = detected.fit.agreeing >= options_.again.lowest_count && detected.fit.lines >= options_.again.lines &&
+  const bool there = detected.fit.agreeing >= options_.again.min_agreeing && detected.fit.lines >= options_.again.lines &&
                      detected.fit.agreeing >= options_.again.fraction * detected.paint.expected;
   if (!there) return std::nullopt;
   return Aim{detected.fit.aim.heading, wide.covariance};
@@ -131,9 +131,9 @@ void PtzTracker::forget_ambiguous() {
 /// From the image alone, which is not tried for every frame.
 std::optional<Aim> PtzTracker::found_in(const Image& image) {
   const int waited = waited_++;
-  if (waited % options_.inspect_again != 0) return std::nullopt;
+  if (waited % options_.search_interval != 0) return std::nullopt;
   FindAgainOptions how = options_.again;
-  how.everywhere = !lost_for_ || waited / options_.inspect_again % options_.inspect_everywhere == 0;
+  how.everywhere = !lost_for_ || waited / options_.search_interval % options_.search_everywhere == 0;
   if (lost_for_) how.near = NearHeading{last_, *lost_for_};
   const auto found = find_again(image, tripod_, options_.pitch, lines_, search_, how);
   if (!found) return std::nullopt;

@@ -67,7 +67,7 @@ double ImageEvidence::both() const {
 }
 
 bool ImageEvidence::enough(const FindAgainOptions& options) const {
-  return fit.agreeing >= options.lowest_count && fit.lines >= options.lines && fit.agreeing >= options.fraction * expected &&
+  return fit.agreeing >= options.min_agreeing && fit.lines >= options.lines && fit.agreeing >= options.fraction * expected &&
          both() >= options.both;
 }
 

@@ -31,7 +31,7 @@ struct FindAgainOptions {
   std::optional<NearHeading> near;  ///< headings about it are tried first, and preferred
   double min_log_focal = 0.3, max_log_focal = 2.4;
   double fraction = 0.55;      ///< of the samples of the lines in view that have to be paint,
-  int lowest_count = 35;       ///< and this many of them,
+  int min_agreeing = 35;       ///< and this many of them,
   int lines = 3;               ///< on this many lines
   double both = 0.4;           ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
   bool everywhere = true;      ///< not about the last heading alone

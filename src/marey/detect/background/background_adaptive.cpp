@@ -19,7 +19,7 @@
 //   frame (background_regions.h); it is trusted to be scene after a second.
 // - Where most of an image does not fit the scene for seconds (the camera was moved), the model begins again.
 //
-// Cost: about five bytes read a pixel and frame; a frame teaches one eighth of the rows, in turn. All else grows with what moves.
+// Cost: about five bytes read a pixel and frame; a frame teaches one eighth of the rows, in phase. All else grows with what moves.
 // References: Stauffer & Grimson 1999 (modes that change places); Manzanera & Richefeu 2007 (sigma-delta); Cucchiara et al. 2003
 // (ghosts and shadows); Barnich & Van Droogenbroeck, ViBe, 2011 (a pixel may appear as its neighbours do).
 #include "marey/detect/background/background_adaptive.h"
@@ -51,8 +51,8 @@ namespace {
 constexpr int kLumaFloor = 8;    // levels: the narrowest band's half width
 constexpr int kChromaFloor = 6;  // levels
 constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
-constexpr int kRotations = 8;    // frames until each row was taught once
-constexpr int kRowsATurn = 16;
+constexpr int kPhases = 8;    // frames until each row was taught once
+constexpr int kRowsPerPhase = 16;
 constexpr int kPatchRotations = 4;     // frames between two searches for parts in another light, while none exist
 constexpr double kPatchMarks = 0.005;  // of the image: with fewer pixels outside the bands none exist
 constexpr double kRestart_s = 2;
@@ -191,7 +191,7 @@ class AdaptiveBackground final : public Background {
     held_row_.assign(padded, 0);
     half_frozen_.assign(padded, 0);
     lost_s_ = 0;
-    default_fraction_ = 0;
+    typical_fraction_ = 0;
     frames_ = 0;
   }
 
@@ -210,9 +210,9 @@ class AdaptiveBackground final : public Background {
   /// Rescales the scene where the light has changed. True where it did.
   bool track_light(const FramePlanes& planes) {
     const double fraction = marked_.pixels / static_cast<double>(size_.area());
-    const bool jumped = fraction > default_fraction_ + 0.03;
-    default_fraction_ += (fraction - default_fraction_) * 0.1;
-    if (!jumped && frames_ % kRotations != 0) return false;
+    const bool jumped = fraction > typical_fraction_ + 0.03;
+    typical_fraction_ += (fraction - typical_fraction_) * 0.1;
+    if (!jumped && frames_ % kPhases != 0) return false;
     const std::optional<LightChange> change = meter_.measure(planes.luma, luma_, black_);
     if (!change || !change->explained) return false;
     luma_.scale(change->gains, black_);
@@ -281,12 +281,12 @@ class AdaptiveBackground final : public Background {
   // ---- learn -------------------------------------------------------------------------------------------------------------
 
   void learn(const FramePlanes& planes, std::span<const Box> held) {
-    const double turn_s = mean_step_s_ * kRotations;
-    const int shift = shift_of(std::min(options_.memory_s, std::max(age_s_, 1.0)), turn_s);
-    const int ticks = second_.ticks_between(age_s_ - turn_s, age_s_);
-    const int turn = static_cast<int>(frames_ % kRotations);
-    for (int first = turn * kRowsATurn; first < size_.height; first += kRotations * kRowsATurn) {
-      const int last = std::min(first + kRowsATurn, size_.height);
+    const double cycle_s = mean_step_s_ * kPhases;
+    const int shift = shift_of(std::min(options_.memory_s, std::max(age_s_, 1.0)), cycle_s);
+    const int ticks = second_.ticks_between(age_s_ - cycle_s, age_s_);
+    const int phase = static_cast<int>(frames_ % kPhases);
+    for (int first = phase * kRowsPerPhase; first < size_.height; first += kPhases * kRowsPerPhase) {
+      const int last = std::min(first + kRowsPerPhase, size_.height);
       for (int y = first; y < last; ++y) count_still(planes, held, y, ticks);
       luma_.learn(planes.luma, first, last, shift, [&](int y) { return freeze(held, y, y); });
       if (!colour_) continue;
@@ -374,7 +374,7 @@ class AdaptiveBackground final : public Background {
 
   std::optional<Timestamp> last_time_;
   double step_s_ = 0, mean_step_s_ = 0, age_s_ = 0, lost_s_ = 0;
-  double default_fraction_ = 0;
+  double typical_fraction_ = 0;
   std::int64_t frames_ = 0;
 
   // Room for one frame's work.

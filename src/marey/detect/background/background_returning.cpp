@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kSameLuma = 10;            // levels, as the scene's first guess has it
 constexpr int kSameChroma = 8;           // levels
-constexpr std::size_t kMinCount = 6;     // samples in which a thing that comes and goes can be distinguished from noise
+constexpr std::size_t kMinSamples = 6;     // samples in which a thing that comes and goes can be distinguished from noise
 constexpr double kMinFraction = 0.15;    // of the samples, in which what returns was seen
 constexpr double kInterrupted = 1.5;     // times as long as it was seen, from the first time to the last: one stay
 constexpr std::size_t kMaxSamples = 31;  // format: a bit for each in 32
@@ -275,7 +275,7 @@ class Correction {
 }  // namespace
 
 void trust_what_returns(std::span<const FramePlanes> samples, const ScenePlanes& scene) {
-  if (samples.size() < kMinCount) return;
+  if (samples.size() < kMinSamples) return;
   if (samples.size() > kMaxSamples) samples = samples.first(kMaxSamples);
   Correction correction(samples, scene);
   for (int y = 0; y < correction.size().height; ++y) correction.inspect_at_row(y);

@@ -69,11 +69,11 @@ void mark_differing(const cv::Mat& scene, const cv::Mat& now, const cv::Rect& bo
     sums.mark(noise.shade, std::max(unlike, kNoiseSigmas * kOfGaussian * noise.deviation), mask);
     return;
   }
-  cv::Mat next_to(scene.size(), CV_8UC1, cv::Scalar(255));
-  next_to(body) = 0;
+  cv::Mat outside(scene.size(), CV_8UC1, cv::Scalar(255));
+  outside(body) = 0;
   cv::Mat difference = as_float(now) - as_float(scene);
   cv::blur(difference, difference, {3, 3});
-  std::vector<float> values = values_of(difference, next_to);
+  std::vector<float> values = values_of(difference, outside);
   const double shade = geometry::median_or(values, 0);
   for (float& value : values) value = static_cast<float>(std::abs(value - shade));
   mask |= cv::abs(difference - shade) > std::max(unlike, kNoiseSigmas * kOfGaussian * geometry::median_or(values, 0));
@@ -165,8 +165,8 @@ std::optional<cv::Mat> uncovered(const Image& scene, const Image& now, const Box
 bool same_within(const Image& a, const Image& b, const cv::Mat& mask) {
   if (a.size() != b.size() || a.empty()) return false;
   cv::Mat difference = as_float(levels_of(a).front()) - as_float(levels_of(b).front());
-  std::vector<float> next_to = values_of(difference, mask == 0);
-  difference -= cv::Scalar(geometry::median_or(next_to, 0));
+  std::vector<float> outside = values_of(difference, mask == 0);
+  difference -= cv::Scalar(geometry::median_or(outside, 0));
   return cv::mean(cv::abs(difference), mask)[0] < kSameLevels;
 }
 

@@ -65,12 +65,12 @@ cv::Mat round_element(int radius) {
 }
 
 /// Where the two differ by more than the noise about the body does, once both are in one light.
-cv::Mat differing(const std::vector<cv::Mat>& scene, const std::vector<cv::Mat>& now, const cv::Mat& next_to) {
+cv::Mat differing(const std::vector<cv::Mat>& scene, const std::vector<cv::Mat>& now, const cv::Mat& outside) {
   cv::Mat mask = cv::Mat::zeros(scene.front().size(), CV_8UC1);
   for (std::size_t i = 0; i < scene.size(); ++i) {
     cv::Mat difference = now[i] - scene[i];
     cv::blur(difference, difference, {3, 3});
-    std::vector<float> values = values_of(difference, next_to);
+    std::vector<float> values = values_of(difference, outside);
     const double shade = middle_value(values);
     for (float& value : values) value = static_cast<float>(std::abs(value - shade));
     const double minimum = std::max(i == 0 ? kUnlikeLuma : kUnlikeChroma, kNoiseSigmas * kOfGaussian * middle_value(values));
@@ -111,9 +111,9 @@ std::optional<cv::Mat> region_at(const cv::Mat& mask, const Box& body) {
 std::optional<cv::Mat> uncovered_slowly(const Image& scene, const Image& now, const Box& body) {
   if (scene.size() != now.size() || scene.is_colour() != now.is_colour() || scene.empty()) return std::nullopt;
   const std::vector<cv::Mat> before = levels_of(scene), after = levels_of(now);
-  cv::Mat next_to(scene.size(), CV_8UC1, cv::Scalar(255));
-  next_to(pixels_of(body, scene.size())) = 0;
-  cv::Mat mask = differing(before, after, next_to);
+  cv::Mat outside(scene.size(), CV_8UC1, cv::Scalar(255));
+  outside(pixels_of(body, scene.size())) = 0;
+  cv::Mat mask = differing(before, after, outside);
   const int gap = std::max(1, static_cast<int>(std::lround(kGap * body.height / 2)));
   cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, round_element(gap));
@@ -211,13 +211,13 @@ TEST(DifferenceSums, MedianDeviationAndMarksAreThoseOfTheSmoothedDifference) {
     const cv::Rect body = cv::Rect(std::uniform_int_distribution(0, 70)(random), std::uniform_int_distribution(0, 70)(random),
                                    std::uniform_int_distribution(0, 70)(random), std::uniform_int_distribution(0, 70)(random)) &
                           cv::Rect({}, size);
-    cv::Mat next_to(size, CV_8UC1, cv::Scalar(255)), before, after;
-    next_to(body) = 0;
+    cv::Mat outside(size, CV_8UC1, cv::Scalar(255)), before, after;
+    outside(body) = 0;
     scene.convertTo(before, CV_32F);
     now.convertTo(after, CV_32F);
     cv::Mat difference = after - before;
     cv::blur(difference, difference, {3, 3});
-    std::vector<float> values = values_of(difference, next_to);
+    std::vector<float> values = values_of(difference, outside);
     const double shade = middle_value(values);
     for (float& value : values) value = static_cast<float>(std::abs(value - shade));
     const DifferenceSums sums(scene, now);

@@ -97,9 +97,9 @@ DifferenceSums::Noise DifferenceSums::noise_outside(const cv::Rect& body) const 
   SumCounts counts;
   for (int y = 0; y < sums_.rows; ++y) {
     const auto* sums = sums_.ptr<std::int16_t>(y);
-    const bool next_to = y < body.y || y >= body.br().y || body.empty();
-    counts.add(sums, 0, next_to ? sums_.cols : body.x);
-    if (!next_to) counts.add(sums, body.br().x, sums_.cols);
+    const bool outside = y < body.y || y >= body.br().y || body.empty();
+    counts.add(sums, 0, outside ? sums_.cols : body.x);
+    if (!outside) counts.add(sums, body.br().x, sums_.cols);
   }
   const int total = static_cast<int>(sums_.total()) - body.area();
   if (total == 0) return {};

@@ -22,8 +22,8 @@ constexpr float kShadowLevel = 0.65F;     // what a shadow leaves of luma, more 
 constexpr float kShadowChroma = 0.8F;     // of chroma's distance from grey
 constexpr float kShadowDeviation = 0.12F;
 constexpr double kUnknownFraction = 0.1;  // of the foreground, that looks like nothing seen before
-constexpr std::size_t kMinCount = 200;    // responses that a foreground can be learned from
-constexpr std::size_t kMaxCount = 6000;   // of those that are given
+constexpr std::size_t kMinResponses = 200;    // responses that a foreground can be learned from
+constexpr std::size_t kMaxResponses = 6000;   // of those that are given
 constexpr int kRounds = 12;
 
 struct Middle {
@@ -164,9 +164,9 @@ float log_density(std::span<const ResponseKind> mixture, const Response& respons
 }
 
 std::vector<ResponseKind> learn_foreground(std::span<const Response> responses, int kinds, std::uint64_t seed) {
-  if (responses.size() < kMinCount) return {unknown(1)};
+  if (responses.size() < kMinResponses) return {unknown(1)};
   std::vector<Response> points;
-  const std::size_t every = (responses.size() + kMaxCount - 1) / kMaxCount;
+  const std::size_t every = (responses.size() + kMaxResponses - 1) / kMaxResponses;
   for (std::size_t i = 0; i < responses.size(); i += every) points.push_back(responses[i]);
   std::vector<Response> centres = beginnings(points, kinds, seed);
   for (int round = 0; round < kRounds; ++round) {

@@ -10,7 +10,7 @@ namespace {
 constexpr int kReach = 3;          // cells to each side: 7 × 7
 constexpr double kSureMap = 0.5;   // the window's peak from which on the map moves the place
 constexpr double kOfPeak = 0.25;   // what is less is not an evidence
-constexpr double kMinValue = 0.5;  // px; a deviation that no map of these cells can undercut
+constexpr double kMinSigma = 0.5;  // px; a deviation that no map of these cells can undercut
 
 double likelihood(double logit) {
   return 1 / (1 + std::exp(-logit));
@@ -56,7 +56,7 @@ HeatPoint point_in(std::span<const float> logits, int cells, double cell, const 
         all.add(likelihood(logit), Vector<2>(c + 0.5, r + 0.5) * cell - point.location);
     }
   }
-  point.covariance = Matrix<2>::Identity() * (kMinValue * kMinValue);
+  point.covariance = Matrix<2>::Identity() * (kMinSigma * kMinSigma);
   if (all.weight > 0) point.covariance += all.second / all.weight;
   return point;
 }

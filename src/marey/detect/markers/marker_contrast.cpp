@@ -17,13 +17,13 @@ constexpr int kLampArea = 50;       // px², from which on a halo is searched fo
 constexpr int kFurther = 12;        // px outside the box, where a halo is fainter
 constexpr double kEnoughArea = 50;  // px² beyond which a blob is no better a marker
 constexpr int kMinClutter = 10;     // blobs from which a tail is reported
-constexpr double kFalseAImage = 0.05;
+constexpr double kFalsePerImage = 0.05;
 constexpr double kMaxFactorOfTypical = 0.5;
 
-/// Places round a blob's box, evenly spread over a frame this many px outside it: `inspect(x, y, inwards_x, inwards_y)` for those
+/// Places round a blob's box, evenly spread over a frame this many px outside it: `visit(x, y, inwards_x, inwards_y)` for those
 /// within the image.
 template <typename Look>
-void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& inspect) {
+void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& visit) {
   const cv::Rect frame(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
   const int length = 2 * (frame.width + frame.height) - 4, step = (length + kRimPositions - 1) / kRimPositions;
   for (int i = 0; i < length; i += step) {  // clockwise
@@ -39,7 +39,7 @@ void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& inspect) 
     }
     if (x < 0 || y < 0 || x >= size.width || y >= size.height) continue;
     const int across = x < box.x ? 1 : x >= box.br().x ? -1 : 0, down = y < box.y ? 1 : y >= box.br().y ? -1 : 0;
-    inspect(x, y, across, down);
+    visit(x, y, across, down);
   }
 }
 
@@ -114,7 +114,7 @@ double above_clutter(std::span<const double> contrasts, double typical) {
   const double minimum = *std::min_element(excess.begin(), excess.end());
   for (double& contrast : excess) contrast -= minimum;
   const double mean = std::max(0.0, geometry::median(excess)) / std::numbers::ln2;
-  return std::min(kMaxFactorOfTypical * typical, minimum + mean * std::log(static_cast<double>(excess.size()) / kFalseAImage));
+  return std::min(kMaxFactorOfTypical * typical, minimum + mean * std::log(static_cast<double>(excess.size()) / kFalsePerImage));
 }
 
 }  // namespace marey::detect::markers

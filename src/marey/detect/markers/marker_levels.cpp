@@ -20,7 +20,7 @@ constexpr int kTile = MarkerThresholds::kTile;
 constexpr int kGrid = 8;             // samples per tile, in each direction
 constexpr int kFraction = 32;        // frames in which every tile is measured once
 constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kMinValue = 0.03;   // of white; of what was compressed or rounded to 8 bits
+constexpr double kMinCompressed = 0.03;   // of white; of what was compressed or rounded to 8 bits
 constexpr double kMinRaw = 0.01;     // of an image of more bits
 constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
 constexpr double kForget = 0.97;     // of the contrast is left after a frame without a marker
@@ -123,7 +123,7 @@ double MarkerLevels::brighter_level(int tile) const {
 
 /// What compression, rounding and shadows leave, grey levels.
 double MarkerLevels::minimum() const {
-  return (depth_ == CV_8U ? kMinValue : kMinRaw) * white_;
+  return (depth_ == CV_8U ? kMinCompressed : kMinRaw) * white_;
 }
 
 double MarkerLevels::noise_demand(int tile) const {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 1 << 18;
 constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
-constexpr int kMaxAppearance = 4;          // at one image
+constexpr int kMaxPasses = 4;          // at one image
 constexpr int kClutterKept = 64;           // frames, before it is asked again whether it is still there
 constexpr double kOfDemand = 0.85;         // a blob over what is round it, in the contrast that its pixels had to have
 constexpr double kNewContrast = 1.5;       // times the known contrast: markers are brighter than was thought
@@ -67,11 +67,11 @@ std::span<const MarkerBlob> MarkerSearch::find(const Frame& frame, std::optional
   prepare(frame.image);
   if (++frames_ % kClutterKept == 0) clutter_.forget();
   standing_.clear();
-  for (int appearances = 1;; ++appearances) {
+  for (int pass = 1;; ++pass) {
     inspect(frame.image);
     if (!options_.automatic()) break;
     assess(luma);
-    if (appearances == kMaxAppearance || !(learned_contrast() || found_clutter())) break;
+    if (pass == kMaxPasses || !(learned_contrast() || found_clutter())) break;
   }
   if (options_.automatic()) levels_.learn_contrast(typical_);
   if (options_.auto_mask_s <= 0 || !auto_mask_.learning()) return blobs_;

@@ -194,7 +194,7 @@ class Fit {
     if (grid_.filled_in_all() < enough_) return best;
     if (candidates_.empty()) list_candidates();
     for (Candidate& candidate : candidates_) {
-      if (candidate.stale) candidate = {inspect_for_new(candidate.location.box), false};
+      if (candidate.stale) candidate = {search_new(candidate.location.box), false};
       if (candidate.location.value > best.value + kBetter) best = candidate.location;
     }
     if (best.value <= -1) return best;
@@ -204,14 +204,14 @@ class Fit {
         const double foot_x = foot.x() + x * grid_.cell(), foot_y = foot.y() + y * grid_.cell();
         const auto size = scene_.size_at(foot_x, foot_y);
         if (!size) continue;
-        const Location location = inspect_for_new(size->box_at(foot_x, foot_y));
+        const Location location = search_new(size->box_at(foot_x, foot_y));
         if (location.value > best.value + kBetter) best = location;
       }
     }
     return best;
   }
 
-  Location inspect_for_new(const Box& box) const {
+  Location search_new(const Box& box) const {
     Location location = inspect_at(box);
     if (location.cover >= options_.min_cover_new) location.value = location.cover + location.arms - above_head(box);
     return location;

@@ -235,7 +235,7 @@ Format epts_format() {
                      const ReadOptions& options) { return match::read_two_files(path, match::epts_files(), options); },
           .write = match::write_epts,
           .from_corner = true,
-          .next_to = {{".xml", ".txt"}}};
+          .companions = {{".xml", ".txt"}}};
 }
 
 }  // namespace marey::format::match

@@ -155,10 +155,10 @@ std::vector<GroundPeriod> periods_of(const GroundMatch& match) {
 
 int whole_rate(double rate_hz, std::string_view format) {
   const double whole = std::round(rate_hz);
-  constexpr double kMaxCount = 1000;
-  if (!(whole >= 1 && whole <= kMaxCount) || std::abs(rate_hz - whole) > 0.005 * whole)
+  constexpr double kMaxRate = 1000;
+  if (!(whole >= 1 && whole <= kMaxRate) || std::abs(rate_hz - whole) > 0.005 * whole)
     throw Error("{} holds whole numbers of frames a second only, up to {:g}, and the recording has {:.3f}; write ground or mot",
-                format, kMaxCount, rate_hz);
+                format, kMaxRate, rate_hz);
   return static_cast<int>(whole);
 }
 

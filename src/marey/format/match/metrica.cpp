@@ -294,7 +294,7 @@ Format metrica_format() {
           .read = match::read_metrica,
           .write = match::write_metrica,
           .from_corner = true,
-          .next_to = {{"_home.csv", "_away.csv"}, {"_away.csv", "_home.csv"}}};
+          .companions = {{"_home.csv", "_away.csv"}, {"_away.csv", "_home.csv"}}};
 }
 
 }  // namespace marey::format::match

@@ -102,16 +102,16 @@ std::vector<SquadMember> read_squads(const std::string& path) {
 int member_called(const std::string& called, const std::string& team, const std::vector<SquadMember>& squads,
                   const std::string& where) {
   const std::string sought = folded(name_from(called, where));
-  std::vector<std::size_t> found, almost;
+  std::vector<std::size_t> found, partial;
   for (std::size_t i = 0; i < squads.size(); ++i) {
     const SquadMember& one = squads[i];
     if (!team.empty() && folded(one.team) != folded(team)) continue;
     const std::array<std::string, 3> exactly{one.label(), one.number + " " + one.team, one.team + " " + one.number};
     if (std::any_of(exactly.begin(), exactly.end(), [&](const std::string& text) { return folded(text) == sought; }))
       found.push_back(i);
-    if (sought == folded(one.name) || sought == one.number) almost.push_back(i);
+    if (sought == folded(one.name) || sought == one.number) partial.push_back(i);
   }
-  if (found.empty()) found = almost;
+  if (found.empty()) found = partial;
   if (found.empty())
     throw Error("{}: no person in the roster is called {}{}", where, shown(called),
                 team.empty() ? "" : " in the team " + shown(team));

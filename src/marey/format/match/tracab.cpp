@@ -308,7 +308,7 @@ Format tracab_format() {
                      const ReadOptions& options) { return match::read_two_files(path, match::tracab_files(), options); },
           .write = match::write_tracab,
           .from_corner = true,
-          .next_to = {{".dat", ".xml"}}};
+          .companions = {{".dat", ".xml"}}};
 }
 
 }  // namespace marey::format::match

@@ -10,27 +10,27 @@ namespace marey::format::motion {
 
 AuxiliaryData auxiliary_data(const C3dHead& head, const C3dLayout& layout, const std::string& path) {
   const double events = head.number("EVENT:USED").value_or(0);
-  AuxiliaryData next_to{.path = path,
+  AuxiliaryData auxiliary{.path = path,
                         .channels = static_cast<std::int64_t>(layout.analog_channels),
                         .events = std::isfinite(events) && events > 0 && events < 1e6 ? static_cast<std::int64_t>(events) : 0};
-  return next_to;
+  return auxiliary;
 }
 
-C3dAuxiliary::C3dAuxiliary(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const AuxiliaryData& next_to)
+C3dAuxiliary::C3dAuxiliary(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const AuxiliaryData& auxiliary)
     : file_(std::move(file)),
-      head_(read_c3d_head(file_ ? file_->bytes() : bytes, next_to.path)),
+      head_(read_c3d_head(file_ ? file_->bytes() : bytes, auxiliary.path)),
       bytes_(file_ ? file_->bytes() : bytes, head_.processor),
-      layout_(c3d_layout(head_, bytes_.size(), next_to.path)),
-      up_(next_to.rotated ? UpAxis::y : UpAxis::z),
+      layout_(c3d_layout(head_, bytes_.size(), auxiliary.path)),
+      up_(auxiliary.rotated ? UpAxis::y : UpAxis::z),
       unsigned_(!layout_.real && head_.text("ANALOG:FORMAT") == "UNSIGNED"),
       offsets_(head_.numbers("ANALOG:OFFSET")) {
   offsets_.resize(layout_.analog_channels, 0);
 }
 
-C3dAuxiliary::C3dAuxiliary(std::span<const std::byte> bytes, const AuxiliaryData& next_to)
-    : C3dAuxiliary(nullptr, bytes, next_to) {}
+C3dAuxiliary::C3dAuxiliary(std::span<const std::byte> bytes, const AuxiliaryData& auxiliary)
+    : C3dAuxiliary(nullptr, bytes, auxiliary) {}
 
-C3dAuxiliary::C3dAuxiliary(const AuxiliaryData& next_to) : C3dAuxiliary(std::make_unique<MappedFile>(next_to.path), {}, next_to) {}
+C3dAuxiliary::C3dAuxiliary(const AuxiliaryData& auxiliary) : C3dAuxiliary(std::make_unique<MappedFile>(auxiliary.path), {}, auxiliary) {}
 
 double C3dAuxiliary::rate_hz() const {
   const double rate = head_.number("POINT:RATE").value_or(0);

@@ -22,9 +22,9 @@ AuxiliaryData auxiliary_data(const C3dHead& head, const C3dLayout& layout, const
 class C3dAuxiliary {
  public:
   /// Throws Error if it cannot be read.
-  explicit C3dAuxiliary(const AuxiliaryData& next_to);
+  explicit C3dAuxiliary(const AuxiliaryData& auxiliary);
   /// The same of bytes in memory, which must outlive it.
-  C3dAuxiliary(std::span<const std::byte> bytes, const AuxiliaryData& next_to);
+  C3dAuxiliary(std::span<const std::byte> bytes, const AuxiliaryData& auxiliary);
 
   std::size_t channels() const { return layout_.analog_channels; }
   std::size_t samples() const { return layout_.analog_samples; }  ///< of a channel in a frame
@@ -51,7 +51,7 @@ class C3dAuxiliary {
  private:
   void fit(std::string_view group, C3dParameter& parameter, UpAxis up) const;
 
-  C3dAuxiliary(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const AuxiliaryData& next_to);
+  C3dAuxiliary(std::unique_ptr<MappedFile> file, std::span<const std::byte> bytes, const AuxiliaryData& auxiliary);
 
   std::unique_ptr<MappedFile> file_;
   C3dHead head_;

@@ -132,8 +132,8 @@ TEST_F(C3dAuxiliaryTest, AnalogChannelsGoAlongFrameByFrame) {
     copy_part(folder_ / "a.c3d", folder_ / "b.c3d", kFirst + 2, kFirst + 6, UpAxis::z, UpAxis::z);
     const auto written = open_c3d(folder_ / "b.c3d");
     EXPECT_EQ(written->info().frame_count, 5);
-    EXPECT_EQ(written->info().next_to.channels, kChannels);
-    EXPECT_EQ(written->info().next_to.events, 1);
+    EXPECT_EQ(written->info().auxiliary.channels, kChannels);
+    EXPECT_EQ(written->info().auxiliary.events, 1);
     const auto instant = written->next();
     EXPECT_EQ(instant->index, kFirst + 2);
     EXPECT_LT((instant->samples.at(0).position - Vector<3>(0.25, 1, 0.5)).norm(), 1e-6);
@@ -168,12 +168,12 @@ TEST_F(C3dAuxiliaryTest, PlatesFollowTheUnitAndTheAxes) {
 
 TEST_F(C3dAuxiliaryTest, ChannelsThatDoNotFitAreLeftOut) {
   write_analog(folder_ / "a.c3d", {.used = 7});  // but for the first block, which says 4 samples of 3 channels
-  EXPECT_EQ(open_c3d(folder_ / "a.c3d")->info().next_to.channels, kChannels);
+  EXPECT_EQ(open_c3d(folder_ / "a.c3d")->info().auxiliary.channels, kChannels);
   std::string bytes = test::read_file(folder_ / "a.c3d");
   bytes[18] = 5;  // samples of a frame
   test::write_file(folder_ / "a.c3d", bytes);
   const auto reader = open_c3d(folder_ / "a.c3d");
-  EXPECT_EQ(reader->info().next_to.channels, 0);
+  EXPECT_EQ(reader->info().auxiliary.channels, 0);
   EXPECT_EQ(reader->info().frame_count, kFrames);
   EXPECT_NE(reader->warnings().back().find("it names 7 analog channels, and has 12 values"), std::string::npos);
 }
@@ -190,8 +190,8 @@ TEST_F(C3dAuxiliaryTest, ChannelsOfAnotherRateAreRefused) {
 TEST_F(C3dAuxiliaryTest, OtherFormatsSayWhatTheyLeaveOut) {
   write_analog(folder_ / "a.c3d", {});
   const auto info = open_c3d(folder_ / "a.c3d")->info();
-  EXPECT_EQ(next_to_lost(info.next_to, "b.c3d", *format_named("c3d", Content::space)), std::nullopt);
-  EXPECT_NE(next_to_lost(info.next_to, "b.trc", *format_named("trc", Content::space))
+  EXPECT_EQ(auxiliary_lost(info.auxiliary, "b.c3d", *format_named("c3d", Content::space)), std::nullopt);
+  EXPECT_NE(auxiliary_lost(info.auxiliary, "b.trc", *format_named("trc", Content::space))
                 ->find("3 analog channels (forces, EMG) and 1 events"),
             std::string::npos);
 }
@@ -317,7 +317,7 @@ TEST(C3dKinds, OthersFilesKeepTheirChannelsAndBodies) {
   const std::string many = test::data("c3d_kinds/many_analogs.c3d"), bodies = test::data("c3d_kinds/C3DRotationExample.c3d");
   if (!fs::exists(many)) GTEST_SKIP() << many << " is not here";
   const test::TemporaryFolder folder;
-  EXPECT_EQ(open_c3d(many)->info().next_to.channels, 922);
+  EXPECT_EQ(open_c3d(many)->info().auxiliary.channels, 922);
   const auto info = open_c3d(many)->info();
   const std::int64_t first = open_c3d(many)->next()->index;
   copy_part(many, folder / "b.c3d", first, first + *info.frame_count - 1, UpAxis::z, UpAxis::z);

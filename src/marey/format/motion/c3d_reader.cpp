@@ -43,8 +43,8 @@ class C3dReader : public FileReader {
     if (maker() != "Marey") zeros_.emplace(points_, locations());  // which marks all that is missing
     if (zeros_) warn(zeros_->warnings());
     find_bodies();
-    if (file_ != nullptr) info_.next_to = auxiliary_data(head_, layout_, name);
-    info_.next_to.rotated = up.value_or(info_.up.value_or(UpAxis::z)) == UpAxis::y;
+    if (file_ != nullptr) info_.auxiliary = auxiliary_data(head_, layout_, name);
+    info_.auxiliary.rotated = up.value_or(info_.up.value_or(UpAxis::z)) == UpAxis::y;
   }
 
   const FileInfo& info() const override { return info_; }

@@ -295,10 +295,10 @@ TEST(C3dCounts, OfAnalogValuesThatFitTheLengthAreRead) {
     EXPECT_EQ(read.warnings.empty(), *stated == 0);
     EXPECT_TRUE(*stated == 0 || read.warns(stated));
     test::write_file(folder / "a.c3d", bytes_of(made));
-    C3dAuxiliary next_to(AuxiliaryData{.path = folder / "a.c3d"});
-    ASSERT_EQ(next_to.channels() * next_to.samples(), 60U);
-    EXPECT_EQ(next_to.samples(), 10U);
-    EXPECT_EQ(next_to.frame(7)[59], 7059);
+    C3dAuxiliary auxiliary(AuxiliaryData{.path = folder / "a.c3d"});
+    ASSERT_EQ(auxiliary.channels() * auxiliary.samples(), 60U);
+    EXPECT_EQ(auxiliary.samples(), 10U);
+    EXPECT_EQ(auxiliary.frame(7)[59], 7059);
   }
 }
 

@@ -82,18 +82,18 @@ class C3dWriter : public PointSink {
 
  private:
   void start(const RecordingHeader& header) override {
-    if (!plan_.info.next_to.path.empty()) next_to_.emplace(plan_.info.next_to);
-    if (analog_channels() > 0 && std::abs(next_to_->rate_hz() / plan_.info.header.rate_hz - 1) > 1e-6)
+    if (!plan_.info.auxiliary.path.empty()) auxiliary_.emplace(plan_.info.auxiliary);
+    if (analog_channels() > 0 && std::abs(auxiliary_->rate_hz() / plan_.info.header.rate_hz - 1) > 1e-6)
       throw Error("{}: {} has {:g} frames a second, and what is written {:g}; analog channels of another rate do not fit", path(),
-                  plan_.info.next_to.path, next_to_->rate_hz(), plan_.info.header.rate_hz);
+                  plan_.info.auxiliary.path, auxiliary_->rate_hz(), plan_.info.header.rate_hz);
     bodies_ = header.bodies;
     if (!bodies_.empty()) poses_.emplace(path());
     file_.emplace(path());
     write_head();
   }
 
-  std::size_t analog_channels() const { return next_to_ ? next_to_->channels() : 0; }
-  std::size_t analog_samples() const { return analog_channels() > 0 ? next_to_->samples() : 0; }
+  std::size_t analog_channels() const { return auxiliary_ ? auxiliary_->channels() : 0; }
+  std::size_t analog_samples() const { return analog_channels() > 0 ? auxiliary_->samples() : 0; }
   std::size_t frame_bytes() const { return (4 * points_ + analog_channels() * analog_samples()) * sizeof(float); }
   std::size_t frame_count() const { return static_cast<std::size_t>(plan_.last_frame - plan_.first_frame + 1); }
   std::size_t points_begin() const { return (data_block_ - 1) * kC3dBlock; }
@@ -115,7 +115,7 @@ class C3dWriter : public PointSink {
       if (row < angles_[i].rows.size() && angles_[i].rows[row]) put_point(tracks_ + i, *angles_[i].rows[row], 0);
     }
     if (analog_channels() > 0) {
-      const std::span<const float> values = next_to_->frame(next_);
+      const std::span<const float> values = auxiliary_->frame(next_);
       row_.insert(row_.end(), values.begin(), values.end());
     }
     static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
@@ -230,7 +230,7 @@ class C3dWriter : public PointSink {
       section.real("GEN_SCALE", 1);
     }
     for (const std::string_view name : kGroupsAlong) {
-      const auto parameters = next_to_ ? next_to_->group(name, plan_.up) : std::vector<C3dParameter>();
+      const auto parameters = auxiliary_ ? auxiliary_->group(name, plan_.up) : std::vector<C3dParameter>();
       if (parameters.empty() || (plan_.found && name.starts_with("EVENT"))) continue;
       const bool analog = name == "ANALOG";
       if (analog && analog_channels() == 0) continue;
@@ -271,7 +271,7 @@ class C3dWriter : public PointSink {
     }
     section.texts("CONTEXTS", contexts);
     section.texts("LABELS", labels);
-    section.texts("SUBJECTS", std::vector<std::string>(events.size(), next_to_ ? next_to_->subject() : std::string()));
+    section.texts("SUBJECTS", std::vector<std::string>(events.size(), auxiliary_ ? auxiliary_->subject() : std::string()));
     for (std::size_t begin = 0, part = 1; begin < events.size() || part == 1; begin += kC3dMaxNames, ++part) {
       const auto here = events.subspan(begin, std::min(kC3dMaxNames, events.size() - begin));
       const std::string number = part == 1 ? "" : std::to_string(part);
@@ -312,7 +312,7 @@ class C3dWriter : public PointSink {
 
   WritePlan plan_;
   std::optional<WholeFile> file_;
-  std::optional<C3dAuxiliary> next_to_;
+  std::optional<C3dAuxiliary> auxiliary_;
   std::optional<RowsBehind> poses_;
   std::vector<AngleTriple> angles_;
   std::vector<Body> bodies_;

@@ -116,7 +116,7 @@ struct PlateChannels {
 
 class PlateReader {
  public:
-  explicit PlateReader(const AuxiliaryData& next_to) : path_(next_to.path), file_(next_to), units_(file_.units()) {}
+  explicit PlateReader(const AuxiliaryData& auxiliary) : path_(auxiliary.path), file_(auxiliary), units_(file_.units()) {}
 
   AnalogData read() {
     if (file_.channels() == 0 || file_.samples() == 0) return std::move(data_);
@@ -270,8 +270,8 @@ class PlateReader {
 
 }  // namespace
 
-AnalogData read_analog_data(const AuxiliaryData& next_to) {
-  return next_to.path.empty() ? AnalogData() : PlateReader(next_to).read();
+AnalogData read_analog_data(const AuxiliaryData& auxiliary) {
+  return auxiliary.path.empty() ? AnalogData() : PlateReader(auxiliary).read();
 }
 
 }  // namespace marey::format::motion

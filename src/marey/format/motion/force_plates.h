@@ -29,6 +29,6 @@ struct AnalogData {
 
 /// Of the C3D file that a recording was read from, turned as the recording is. Without channels: empty. Loads have the file's sign:
 /// C3D specifies the force on the person, so that a standing person's points up. Throws Error if the file cannot be read.
-AnalogData read_analog_data(const AuxiliaryData& next_to);
+AnalogData read_analog_data(const AuxiliaryData& auxiliary);
 
 }  // namespace marey::format::motion

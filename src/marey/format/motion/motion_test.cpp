@@ -428,8 +428,8 @@ TEST(MocapFiles, RejectsNonFinitePosition) {
   ASSERT_EQ(read.warnings.size(), 1U);
   EXPECT_NE(read.warnings[0].find("51 angles, 20 forces, 18 moments, 16 powers, 2 scalars stand among its points"),
             std::string::npos);
-  EXPECT_EQ(read.info.next_to.channels, 24);
-  EXPECT_EQ(read.info.next_to.events, 12);
+  EXPECT_EQ(read.info.auxiliary.channels, 24);
+  EXPECT_EQ(read.info.auxiliary.events, 12);
 }
 
 TEST(MocapFiles, HeadersAtOddPlacesReadTheSame) {

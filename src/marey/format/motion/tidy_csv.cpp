@@ -33,7 +33,7 @@ class TidyReader : public FileReader {
       : file_(std::move(file)), name_(std::move(name)), lines_(text) {
     find_columns();
     rows_ = lines_.rest();
-    inspect_over();
+    scan();
     lines_.go_to(rows_, 2);
   }
 
@@ -167,7 +167,7 @@ class TidyReader : public FileReader {
   }
 
   /// The first reading: tracks, rate, order.
-  void inspect_over() {
+  void scan() {
     std::optional<std::int64_t> first, last;
     bool in_order = true;
     FrameNumbers numbers;

@@ -144,12 +144,12 @@ Rig stereo(const Json& root, const std::string& path) {
     rig.cameras[i].size = size_at(root);
     rig.cameras[i].lens = lens_at(child(root, K[i]), child(root, D[i]), false, path);
   }
-  Json next_to;
+  Json extrinsics;
   if (child(root, {"R"}).is_null()) {
     const auto name = std::filesystem::path(path).parent_path() / ("extrinsics" + std::filesystem::path(path).extension().string());
-    if (std::filesystem::exists(name)) next_to = parse_file_storage(read_file(name.string()), name.string());
+    if (std::filesystem::exists(name)) extrinsics = parse_file_storage(read_file(name.string()), name.string());
   }
-  const Json& poses = next_to.is_null() ? root : next_to;
+  const Json& poses = extrinsics.is_null() ? root : extrinsics;
   if (child(poses, {"R"}).is_null() || child(poses, {"T"}).is_null()) return rig;
   const auto t = as_many(child(poses, {"T"}), 3, path, "T");
   rig.cameras[0].camera_from_world = Rigid3{};

@@ -93,7 +93,7 @@ PtvControl control_of(const std::string& path) {
 }
 
 /// All numbers of a file, at least `fewest` of them.
-std::vector<double> ptv_numbers(const std::string& path, std::size_t lowest_count, const char* what) {
+std::vector<double> ptv_numbers(const std::string& path, std::size_t min_count, const char* what) {
   const std::string text = read_file(path);
   std::vector<double> values;
   for_each_line(text, path, [&](std::string_view line, const std::string& where) {
@@ -108,7 +108,7 @@ std::vector<double> ptv_numbers(const std::string& path, std::size_t lowest_coun
       line.remove_prefix(word.size());
     }
   });
-  if (values.size() < lowest_count) throw Error("{}: {} numbers, and {} has {} or more", path, values.size(), what, lowest_count);
+  if (values.size() < min_count) throw Error("{}: {} numbers, and {} has {} or more", path, values.size(), what, min_count);
   return values;
 }
 
@@ -220,8 +220,8 @@ Rig read_openptv_rig(const std::string& path) {
   if (fs::path(path).extension() == ".ori") {
     rig.cameras.push_back(camera_of(fs::path(path).replace_extension().string(), control, off_px));
   } else {
-    const fs::path next_to = fs::path(control_file).parent_path();
-    const fs::path folder = next_to.filename() == "parameters" ? next_to / ".." : next_to;
+    const fs::path control_folder = fs::path(control_file).parent_path();
+    const fs::path folder = control_folder.filename() == "parameters" ? control_folder / ".." : control_folder;
     for (const std::string& image : control.cameras)
       rig.cameras.push_back(camera_of((folder / image).lexically_normal().string(), control, off_px));
   }

@@ -152,8 +152,8 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
                 "rms_px", "ptz",    "pivot",      "axis_tilt",  "nodal_offset", "radial",      "exposure",
                 "gain",   "masks",  "threshold"});
   check_name(section, camera.name);
-  camera.source = source_next_to(folder, section.text("source").value_or(""));
-  camera.detections = source_next_to(folder, section.text("detections").value_or(""));
+  camera.source = source_in_folder(folder, section.text("source").value_or(""));
+  camera.detections = source_in_folder(folder, section.text("detections").value_or(""));
   if (!camera.source.empty() && !camera.detections.empty()) {
     section.problem("detections", "it has both a source and detections; keep one of them");
   }

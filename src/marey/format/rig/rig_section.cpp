@@ -136,16 +136,16 @@ std::optional<int> Section::count(std::string_view key) const {
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t lowest_count, std::size_t maximum,
+std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t min_count, std::size_t maximum,
                                                     std::string_view form) const {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
-  if (auto values = numbers_of(*node); values && values->size() >= lowest_count && values->size() <= maximum) return values;
+  if (auto values = numbers_of(*node); values && values->size() >= min_count && values->size() <= maximum) return values;
   problem(key, fmt::format("{} must be {}", key, form));
   return std::nullopt;
 }
 
-std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t lowest_count, std::size_t maximum,
+std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t min_count, std::size_t maximum,
                                                std::string_view form) const {
   const toml::node* node = find(key);
   if (node == nullptr) return {};
@@ -154,7 +154,7 @@ std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t
   bool good = array != nullptr && array->size() <= maximum;
   for (std::size_t i = 0; good && i < array->size(); ++i) {
     auto row = numbers_of(*array->get(i));
-    good = row && row->size() >= lowest_count;
+    good = row && row->size() >= min_count;
     if (good) rows.push_back(std::move(*row));
   }
   if (good) return rows;

@@ -53,11 +53,11 @@ class Section {
   std::optional<double> positive(std::string_view key) const;
   std::optional<int> count(std::string_view key) const;
   /// Between `fewest` and `most` numbers; `form` says in words what they must be.
-  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t lowest_count, std::size_t maximum,
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t min_count, std::size_t maximum,
                                              std::string_view form) const;
   /// At most `most` rows of at least `fewest` numbers; none where the key is missing, or, with a problem, where it is something
   /// else.
-  std::vector<std::vector<double>> rows(std::string_view key, std::size_t lowest_count, std::size_t maximum,
+  std::vector<std::vector<double>> rows(std::string_view key, std::size_t min_count, std::size_t maximum,
                                         std::string_view form) const;
   std::optional<Matrix<3>> matrix(std::string_view key) const;
   std::optional<Matrix<3>> invertible(std::string_view key) const;

@@ -287,7 +287,7 @@ std::unique_ptr<FileReader> open_acclaim(const std::string& path, const ReadOpti
   const SkeletonOptions options = skeleton_options(how);
   const std::string text = read_file(path);
   if (text.find(":bonedata") != std::string::npos) return recording_of(parse_asf(text, path, options), path);
-  const std::string asf = how.metadata.empty() ? asf_next_to(path) : how.metadata;
+  const std::string asf = how.metadata.empty() ? asf_for(path) : how.metadata;
   SkeletonFile file = parse_asf(read_file(asf), asf, options);
   file.motion = parse_amc(text, path, file, options);
   return recording_of(std::move(file), path);

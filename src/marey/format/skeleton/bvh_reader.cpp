@@ -219,7 +219,7 @@ class BvhText {
   }
 
   void rows(std::optional<std::int64_t> frames, double step) {
-    SkeletonMotion motion{.rate_hz = default_rate(1 / step), .times = {}, .rows = {}};
+    SkeletonMotion motion{.rate_hz = rounded_rate(1 / step), .times = {}, .rows = {}};
     const std::vector<double> rest = file_.skeleton.rest();
     while (next()) {
       std::vector<double> row = rest;
@@ -244,7 +244,7 @@ class BvhText {
   }
 
   /// Frame Time is often written with few digits: 0.008333 means 120 Hz.
-  static double default_rate(double rate) {
+  static double rounded_rate(double rate) {
     const double whole = std::round(rate);
     return whole > 0 && std::abs(rate - whole) < 1e-4 * whole ? whole : rate;
   }

@@ -103,7 +103,7 @@ std::unique_ptr<FileReader> recording_of(SkeletonFile file, const std::string& p
   return std::make_unique<SkeletonReader>(std::move(file), path);
 }
 
-std::string asf_next_to(const std::string& amc) {
+std::string asf_for(const std::string& amc) {
   const fs::path path(amc), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const std::string stem = path.stem().string();
   std::vector<fs::path> all;

@@ -21,6 +21,6 @@ inline SkeletonOptions skeleton_options(const ReadOptions& how) {
 
 /// The .asf that an .amc file's bones are in: beside it, of its name or its beginning (01_02.amc: 01.asf), or the only one there.
 /// Throws Error if it does not exist.
-std::string asf_next_to(const std::string& amc);
+std::string asf_for(const std::string& amc);
 
 }  // namespace marey::format::skeleton

@@ -120,15 +120,15 @@ TEST(Acclaim, FindsTheBonesOfItsFrames) {
   const std::string own = folder / "07_01.amc";
   test::write_file(own, "#!\n:FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n");
   EXPECT_EQ(format_of_content(own)->name, "amc");
-  EXPECT_THROW(asf_next_to(own), Error);
+  EXPECT_THROW(asf_for(own), Error);
   test::write_file(folder / "other.asf", "");
-  EXPECT_EQ(fs::path(asf_next_to(own)).filename(), "other.asf") << "the only one";
+  EXPECT_EQ(fs::path(asf_for(own)).filename(), "other.asf") << "the only one";
   test::write_file(folder / "third.asf", "");
-  EXPECT_THROW(asf_next_to(own), Error);
+  EXPECT_THROW(asf_for(own), Error);
   test::write_file(folder / "07.ASF", "");
-  EXPECT_EQ(fs::path(asf_next_to(own)).filename(), "07.ASF") << "the subject's";
+  EXPECT_EQ(fs::path(asf_for(own)).filename(), "07.ASF") << "the subject's";
   test::write_file(folder / "07_01.asf", "");
-  EXPECT_EQ(fs::path(asf_next_to(own)).filename(), "07_01.asf");
+  EXPECT_EQ(fs::path(asf_for(own)).filename(), "07_01.asf");
 }
 
 /// CMU's 01_01 as ASF/AMC and as BVH: legs are the same, the BVH's first frame is a pose of rest.

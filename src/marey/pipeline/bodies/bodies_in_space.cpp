@@ -176,7 +176,7 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
   summary.stopped = stopped;
   for (std::string& warning : reader->warnings()) summary.warnings.push_back(std::move(warning));
   if (auto message_text = format::poses_lost(header, out, format)) summary.warnings.push_back(std::move(*message_text));
-  if (auto message_text = format::next_to_lost(reader->info().next_to, out, format))
+  if (auto message_text = format::auxiliary_lost(reader->info().auxiliary, out, format))
     summary.warnings.push_back(std::move(*message_text));
   return summary;
 }

@@ -73,17 +73,17 @@ bool is_voltage(const std::string& unit) {
 }  // namespace
 
 format::motion::AnalogData read_plates(const std::string& recording, const GaitMarkers& markers, const std::string& plates) {
-  if (plates.empty() && !markers.next_to.path.empty()) return format::motion::read_analog_data(markers.next_to);
+  if (plates.empty() && !markers.auxiliary.path.empty()) return format::motion::read_analog_data(markers.auxiliary);
   if (plates.empty()) return plates_of_take(recording);
   format::ReadOptions how;
   if (markers.up == format::UpAxis::y) how.up = markers.up;
   const auto reader = format::open_recording(plates, format::format_to_read(plates, format::Content::space), how);
-  if (reader->info().next_to.channels == 0)
+  if (reader->info().auxiliary.channels == 0)
     throw Error("{}: has no force plates; a C3D file with analog channels is wanted", plates);
   if (std::abs(reader->header().rate_hz - markers.rate_hz) > 1e-6 * markers.rate_hz)
     throw Error("{}: has {:g} frames a second, and {} {:g}; force plates of the same walk are wanted", plates,
                 reader->header().rate_hz, recording, markers.rate_hz);
-  format::motion::AnalogData analog = format::motion::read_analog_data(reader->info().next_to);
+  format::motion::AnalogData analog = format::motion::read_analog_data(reader->info().auxiliary);
   if (analog.plates.empty()) throw Error("{}: has no force plates", plates);
   const double end_s = analog.begin_s + static_cast<double>(analog.plates.front().loads.size()) / analog.rate_hz;
   const double walk_end_s = markers.begin_s + static_cast<double>(markers.rows.size()) / markers.rate_hz;

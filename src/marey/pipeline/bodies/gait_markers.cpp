@@ -95,7 +95,7 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
   GaitMarkers markers;
   markers.up = format::up_axis(reader->info(), up);
   markers.rate_hz = reader->header().rate_hz;
-  markers.next_to = reader->info().next_to;
+  markers.auxiliary = reader->info().auxiliary;
   markers.set = &set;
   std::map<TrackId, std::string> labels;
   const auto learn = [&](std::span<const TrackName> named) {

@@ -146,7 +146,7 @@ std::vector<format::skeleton::ExternalLoad> plate_loads(const std::string& model
   format::ReadOptions how;
   how.up = options.up;
   const auto reader = format::open_recording(options.loads, format::format_to_read(options.loads, format::Content::space), how);
-  const format::motion::AnalogData analog = format::motion::read_analog_data(reader->info().next_to);
+  const format::motion::AnalogData analog = format::motion::read_analog_data(reader->info().auxiliary);
   if (analog.plates.empty()) throw Error("{}: has no force plates", options.loads);
   warnings.insert(warnings.end(), analog.warnings.begin(), analog.warnings.end());
   const gait::FootForces forces =

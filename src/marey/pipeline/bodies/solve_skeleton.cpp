@@ -102,7 +102,7 @@ std::optional<std::string> write_output(const std::string& path, const std::stri
   plan.info.header.made_by = made_by;
   plan.info.header.bodies = bodies_of(solved.skeleton);
   replay_with_bodies(recording, solved, options, made_by, *format::create_recording(path, format, plan));
-  return format::next_to_lost(plan.info.next_to, path, format);
+  return format::auxiliary_lost(plan.info.auxiliary, path, format);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TrackedPtz track_from_clicks(int clicked, const Vector<2>& slip, int frames, boo
   PtzMatch ahead(options, 2);
   for (int i = 0; i <= clicked; ++i) ahead.advance();
   marey::calibrate::ptz::TrackingOptions tracking;
-  if (!by_image) tracking.again.lowest_count = 1'000'000;
+  if (!by_image) tracking.again.min_agreeing = 1'000'000;
   PtzTracker tracker(ahead.tripod(), options.size, tracking);
   tracker.know(clicked, *ahead.heading(), clicks_in(ahead, slip));
   PtzMatch match(options, 2);

@@ -12,7 +12,7 @@ namespace marey::pipeline::corridor {
 namespace {
 
 constexpr std::size_t kKept = 16;  // frames of a camera that wait for their instants
-constexpr double kTrack = 0.05;    // of what the moments are off the frames, each time
+constexpr double kCorrection = 0.05;    // of what the moments are off the frames, each time
 
 double live_rate(const std::vector<Feed>& feeds) {
   double rate = 0;
@@ -114,7 +114,7 @@ class LiveGrouping final : public FrameGrouping {
     }
     if (off_.empty()) return;
     const double off = geometry::median(off_);
-    if (std::abs(off) > kInStep / rate_hz_) *start_ += duration_from_seconds(kTrack * off);
+    if (std::abs(off) > kInStep / rate_hz_) *start_ += duration_from_seconds(kCorrection * off);
   }
 
   /// The instant that the newest frame belongs to.

@@ -138,7 +138,7 @@ class Answerer {
       if (!since_.counts(review_item.edit))
         throw Error("{}: edit {}, after which this was listed, was taken back; list the doubts again", review_item.where,
                     review_item.edit);
-      if (review_item.kind == "swap") interchange(review_item);
+      if (review_item.kind == "swap") apply_swap(review_item);
       if (review_item.kind == "continuity") same(review_item);
     }
     for (const ReviewItem& review_item : review_items) {  // when every other person is where they belong
@@ -190,7 +190,7 @@ class Answerer {
   /// Whether it is a person's, not inferred from clothing colours.
   static bool is_name(const std::string& label) { return !label.empty() && label != "keeper" && label != "referee"; }
 
-  void interchange(const ReviewItem& review_item) {
+  void apply_swap(const ReviewItem& review_item) {
     const std::string answer = lower(review_item.answer);
     if (answer == "no" || answer == "n") return;
     if (answer != "yes" && answer != "y")

@@ -11,12 +11,12 @@ namespace {
 
 using track::ground::offline::GroundIdentities;
 
-constexpr int kNoPerson = -1;
+constexpr int kNoPath = -1;
 
 /// Whose each row of a track is.
 struct OwnedRows {
   const TrackColumns* track = nullptr;
-  std::vector<int> path;  // or kNoPerson
+  std::vector<int> path;  // or kNoPath
 };
 
 class Owners {
@@ -44,7 +44,7 @@ class Owners {
     for (OwnedRows& rows : all) {
       for (std::size_t row = 0; row < rows.path.size(); ++row) {
         const std::int32_t instant = rows.track->at()[row];
-        if (rows.path[row] == kNoPerson) rows.path[row] = claim(between(segments_[rows.track->id()], instant), instant);
+        if (rows.path[row] == kNoPath) rows.path[row] = claim(between(segments_[rows.track->id()], instant), instant);
       }
     }
     return all;
@@ -54,7 +54,7 @@ class Owners {
   const GroundIdentities::TimeChunk& segment(int index) const { return found_.segments[static_cast<std::size_t>(index)]; }
 
   int claim(int path, std::int32_t instant) {
-    if (path == kNoPerson || taken_[static_cast<std::size_t>(path)][static_cast<std::size_t>(instant)]) return kNoPerson;
+    if (path == kNoPath || taken_[static_cast<std::size_t>(path)][static_cast<std::size_t>(instant)]) return kNoPath;
     taken_[static_cast<std::size_t>(path)][static_cast<std::size_t>(instant)] = true;
     return path;
   }
@@ -67,7 +67,7 @@ class Owners {
 
   int within(const std::vector<int>& segments, std::int32_t instant) const {
     const auto after = first_after(segments, instant);
-    if (after == segments.begin() || segment(*std::prev(after)).last < instant) return kNoPerson;
+    if (after == segments.begin() || segment(*std::prev(after)).last < instant) return kNoPath;
     return segment(*std::prev(after)).path;
   }
 
@@ -77,8 +77,8 @@ class Owners {
     const auto after = first_after(segments, instant);
     const int before = *std::prev(after);
     const auto next = tracks_.find(before);
-    if (after == segments.end()) return next == tracks_.end() ? segment(before).path : kNoPerson;
-    return next != tracks_.end() && next->second == *after ? segment(before).path : kNoPerson;
+    if (after == segments.end()) return next == tracks_.end() ? segment(before).path : kNoPath;
+    return next != tracks_.end() && next->second == *after ? segment(before).path : kNoPath;
   }
 
   const GroundIdentities& found_;
@@ -114,12 +114,12 @@ class Namer {
   void take_apart(const OwnedRows& rows) {
     struct Run {
       std::size_t first = 0;
-      int path = kNoPerson;
+      int path = kNoPath;
     };
     std::vector<Run> runs;
     for (std::size_t row = 0; row < rows.path.size(); ++row) {
       if (runs.empty() || runs.back().path != rows.path[row]) runs.push_back({row, rows.path[row]});
-      if (rows.path[row] != kNoPerson) named_.known_s[static_cast<std::size_t>(rows.path[row])] += 1 / recording_.header.rate_hz;
+      if (rows.path[row] != kNoPath) named_.known_s[static_cast<std::size_t>(rows.path[row])] += 1 / recording_.header.rate_hz;
     }
     for (std::size_t r = runs.size(); r-- > 0;) {
       int id = number(rows.track->id());
@@ -128,7 +128,7 @@ class Namer {
         edit(fmt::format("split #{} {}", id, recording_.instants()[static_cast<std::size_t>(first)].index));
         id = next_++;
       }
-      if (runs[r].path == kNoPerson) {
+      if (runs[r].path == kNoPath) {
         edit(fmt::format("delete #{}", id));
         const std::size_t end = r + 1 < runs.size() ? runs[r + 1].first : rows.path.size();
         named_.excluded += static_cast<std::int64_t>(end - runs[r].first);

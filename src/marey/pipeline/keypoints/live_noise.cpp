@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kBlock = 1000;  // points, numerical: enough for a median
 constexpr int kMaxBlocks = 10;        // numerical: then the median is known
 // Numerical: never above the start, so that a rig that does not fit cannot widen the gates by its own errors.
-constexpr double kMinValue = 0.5, kMaxCount = 2.6;
+constexpr double kMinNoise = 0.5, kMaxNoise = 2.6;
 constexpr double kMedianOfMean = 0.9;  // by definition: the median of a sum of squares is a little below its mean
 
 }  // namespace
@@ -24,7 +24,7 @@ void LiveNoise::learn(std::span<const reconstruct::keypoints::LocatedPerson> peo
   if (squares_.size() < kBlock) return;
   const auto middle = squares_.begin() + std::ssize(squares_) / 2;
   std::nth_element(squares_.begin(), middle, squares_.end());
-  noise_ = std::clamp(slack * noise_ * std::sqrt(*middle / kMedianOfMean), kMinValue, kMaxCount);
+  noise_ = std::clamp(slack * noise_ * std::sqrt(*middle / kMedianOfMean), kMinNoise, kMaxNoise);
   squares_.clear();
   ++blocks_;
 }

@@ -52,7 +52,7 @@ bool feeds_find(LiveJob job, LiveTargets targets) {
   return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
 }
 
-void inspect_for_markers(std::vector<corridor::Feed>& feeds, LiveJob job, LiveOptions& options) {
+void adapt_to_markers(std::vector<corridor::Feed>& feeds, LiveJob job, LiveOptions& options) {
   for (std::size_t i = 0; i < feeds.size(); ++i) {
     if (options.targets == LiveTargets::markers) feeds[i].tune(options.camera_settings->tuning(i));
     if (feeds_find(job, options.targets))
@@ -216,7 +216,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   summary.job = live_job(fed, options.targets, options.ground);
   if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);
   check_options(options, summary.job);
-  inspect_for_markers(feeds, summary.job, options);
+  adapt_to_markers(feeds, summary.job, options);
   corridor::LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
   bool begun = false;

@@ -94,8 +94,8 @@ class ImageMarkerStage final : public corridor::Stage {
 
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& /*hooks*/) override {
     if (options_.live) return nullptr;
-    const int lowest_count = static_cast<int>(std::min<std::size_t>(3, time_steps_.size()));  // a single image has markers too
-    return std::make_unique<FilledRows>(track::offline::rows_of_points(recording_, lowest_count), std::move(time_steps_),
+    const int min_detections = static_cast<int>(std::min<std::size_t>(3, time_steps_.size()));  // a single image has markers too
+    return std::make_unique<FilledRows>(track::offline::rows_of_points(recording_, min_detections), std::move(time_steps_),
                                         std::move(labels_));
   }
 

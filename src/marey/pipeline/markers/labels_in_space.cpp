@@ -18,14 +18,14 @@
 namespace marey::pipeline::markers {
 namespace {
 
-Recording points_in(const std::string& path, std::vector<std::string>* warnings, format::AuxiliaryData* next_to = nullptr) {
+Recording points_in(const std::string& path, std::vector<std::string>* warnings, format::AuxiliaryData* auxiliary = nullptr) {
   const auto reader = format::open_recording(path);
   if (reader->header().frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: names are for points in space, and these positions are {}", path, to_string(reader->header().frame));
   Recording recording = read_all(*reader);
   recording.header.name = path;
   if (warnings != nullptr) *warnings = reader->warnings();
-  if (next_to != nullptr) *next_to = reader->info().next_to;
+  if (auxiliary != nullptr) *auxiliary = reader->info().auxiliary;
   return recording;
 }
 
@@ -161,8 +161,8 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   const format::Format& format = format::format_to_write(out, "", format::Content::space);
   const LearnedMarkers learned = format::bodies::read_label_set(set);
   require_of_set(accept, learned, set);
-  format::AuxiliaryData next_to;
-  Recording read = points_in(recording, &summary.warnings, &next_to);
+  format::AuxiliaryData auxiliary;
+  Recording read = points_in(recording, &summary.warnings, &auxiliary);
   std::set<std::string> fitted;
   std::vector<TrackColumns> excluded = take_out(read, exclude, fitted);
   require_fitted(exclude, fitted, recording);
@@ -181,11 +181,11 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   }
   for (const auto& marker : labelled.health) summary.named += marker.detected;
   format::WritePlan plan = format::plan_of(*format::reader_of(named), out);
-  plan.info.next_to = next_to;
+  plan.info.auxiliary = auxiliary;
   const auto sink = format::create_recording(out, format, plan, &summary.warnings);
   MemoryReader reader(named);
   replay(reader, *sink);
-  if (auto message_text = format::next_to_lost(next_to, out, format)) summary.warnings.push_back(std::move(*message_text));
+  if (auto message_text = format::auxiliary_lost(auxiliary, out, format)) summary.warnings.push_back(std::move(*message_text));
   summary.health = std::move(labelled.health);
   summary.unnamed = std::move(labelled.unnamed);
   summary.renamed = labelled.renamed;

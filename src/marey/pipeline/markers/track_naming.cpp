@@ -63,17 +63,17 @@ void TrackNaming::take_name(TrackId track) {
   fresh_.insert(track);
 }
 
-void TrackNaming::report_apart(const Instant& instant) {
+void TrackNaming::resolve_duplicates(const Instant& instant) {
   if (given_.empty()) return;
-  const auto turn_of = [&](TrackId track) { return given_.contains(track) ? given_.at(track).turn : 0; };
+  const auto order_of = [&](TrackId track) { return given_.contains(track) ? given_.at(track).order : 0; };
   std::map<std::string, TrackId> bearers;
   for (const Sample& sample : instant.samples) {
     const std::string label = label_of(sample.track);
     if (label.empty()) continue;
     const auto [bearer, first] = bearers.try_emplace(label, sample.track);
-    if (first || bearer->second == sample.track || turn_of(bearer->second) == turn_of(sample.track)) continue;
+    if (first || bearer->second == sample.track || order_of(bearer->second) == order_of(sample.track)) continue;
     TrackId loser = sample.track;
-    if (turn_of(bearer->second) < turn_of(loser)) std::swap(bearer->second, loser);
+    if (order_of(bearer->second) < order_of(loser)) std::swap(bearer->second, loser);
     take_name(loser);
   }
 }
@@ -91,7 +91,7 @@ std::span<const Instant> TrackNaming::enter(std::span<const Instant> instants) {
   if (instants.empty()) return instants;
   present_.clear();
   for (const Sample& sample : instants.back().samples) present_.insert(sample.track);
-  for (const Instant& instant : instants) report_apart(instant);
+  for (const Instant& instant : instants) resolve_duplicates(instant);
   if (!reported && fresh_.empty()) return instants;
   changed_.assign(instants.begin(), instants.end());
   for (const TrackId track : fresh_) changed_.front().named.push_back(own_.at(track));

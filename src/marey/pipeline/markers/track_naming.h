@@ -28,11 +28,11 @@ class TrackNaming {
  private:
   struct Given {
     std::string label;
-    int turn = 0;  ///< the later, the larger
+    int order = 0;  ///< the later, the larger
   };
   const std::string& label_of(TrackId track) const;
   void take_name(TrackId track);
-  void report_apart(const Instant& instant);
+  void resolve_duplicates(const Instant& instant);
 
   std::mutex mutex_;
   std::map<TrackId, TrackName> own_;  // of every track that was there, as the run calls it

@@ -17,7 +17,7 @@ constexpr double kOften = 0.05;            // of the frames
 constexpr double kMajorityFraction = 0.5;  // of the image, at once
 constexpr double kMinForeground = 0.0005;  // of the image, in which nothing is reported
 constexpr std::size_t kMinKept = 10;       // frames
-constexpr double kRarelyKept = 0.1;        // share of the foreground: a walker keeps half of it at 5 images a second
+constexpr double kMinKept = 0.1;        // share of the foreground: a walker keeps half of it at 5 images a second
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::vector<std::string> ImageAmbiguities::warnings() const {
   if (kept_.size() >= kMinKept) {
     std::vector<float> kept = kept_;
     const auto middle = geometry::median(kept);
-    if (middle < kRarelyKept)
+    if (middle < kMinKept)
       all.push_back(
           fmt::format("what moves has left its place in the next image ({:.0f} % of it is still there): either the images are "
                       "too far apart in time to track any person (a time lapse), or what moves is rain, snow or noise",

@@ -7,11 +7,11 @@
 
 namespace marey::pipeline::people {
 
-ImageLog::ImageLog(bool contours, std::string contours_beside, bool with_lines)
-    : with_contours_(contours), next_to_(std::move(contours_beside)), with_lines_(with_lines), contours_(new_contours()) {}
+ImageLog::ImageLog(bool contours, std::string spill_path, bool with_lines)
+    : with_contours_(contours), spill_path_(std::move(spill_path)), with_lines_(with_lines), contours_(new_contours()) {}
 
 std::unique_ptr<track::offline::OutlineLog> ImageLog::new_contours() const {
-  return with_contours_ ? std::make_unique<track::offline::OutlineLog>(next_to_, with_lines_) : nullptr;
+  return with_contours_ ? std::make_unique<track::offline::OutlineLog>(spill_path_, with_lines_) : nullptr;
 }
 
 void ImageLog::add_searched(const Frame& frame) {

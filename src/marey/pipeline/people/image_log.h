@@ -19,8 +19,8 @@ namespace marey::pipeline::people {
 
 class ImageLog {
  public:
-  /// `contours_beside`: contours wait in a nameless file next to this path. `with_lines`: their measurement lines too.
-  ImageLog(bool contours, std::string contours_beside, bool with_lines);
+  /// `spill_path`: contours wait in a nameless file next to this path. `with_lines`: their measurement lines too.
+  ImageLog(bool contours, std::string spill_path, bool with_lines);
 
   /// A frame in which no person was searched: its rows are interpolated.
   void add_unsearched(const Frame& frame) { time_steps_.push_back({frame.index, frame.time}); }
@@ -51,7 +51,7 @@ class ImageLog {
   std::unique_ptr<track::offline::OutlineLog> new_contours() const;
 
   bool with_contours_;
-  std::string next_to_;
+  std::string spill_path_;
   bool with_lines_;
   track::offline::TrackletLog tracks_;
   std::unique_ptr<track::offline::OutlineLog> contours_;  // null: none

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/pipeline/corridor/next_to.h"
+#include "marey/pipeline/corridor/parallel_tasks.h"
 #include "marey/pipeline/keypoints/keypoint_stage.h"
 #include "marey/pipeline/people/camera_span.h"
 #include "marey/pipeline/people/image_ambiguities.h"
@@ -44,16 +44,16 @@ class ImageStage : public corridor::Stage {
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
-    corridor::NextTo next_to;
-    watch(given.frame, next_to);
+    corridor::ParallelTasks parallel;
+    watch(given.frame, parallel);
     const detect::Detections found = tracking_.detect(given);
     if (tracking_.detector() != nullptr) image_ambiguities_.add(found);
     if (!found.searched) {
-      next_to.wait();
+      parallel.wait();
       return unsearched(given.frame);
     }
     const auto tracks = tracking_.track(given.frame, found);
-    next_to.wait();
+    parallel.wait();
     if (given.detections) camera_span_.observe_frame(given.frame.time, tracks);
     const bool stood = standing_ && standing_->observe_frame(given.frame, tracks, *tracking_.detector());
     return tracked(given.frame, found, tracks, stood);
@@ -97,9 +97,9 @@ class ImageStage : public corridor::Stage {
 
  private:
   /// What images show that does not depend on who is in them.
-  void watch(const Frame& frame, corridor::NextTo& next_to) {
-    if (tracking_.detector() != nullptr) next_to.run([this, &frame] { image_ambiguities_.watch(frame); });
-    if (standing_) next_to.run([this, &frame] { standing_->inspect(frame); });
+  void watch(const Frame& frame, corridor::ParallelTasks& parallel) {
+    if (tracking_.detector() != nullptr) parallel.run([this, &frame] { image_ambiguities_.watch(frame); });
+    if (standing_) parallel.run([this, &frame] { standing_->inspect(frame); });
   }
 
   void report_search(corridor::Summary& summary) const {
@@ -178,7 +178,7 @@ class LiveImage final : public ImageStage {
 class RecordedImage final : public ImageStage {
  public:
   RecordedImage(const corridor::Feed& feed, const ImagePeopleOptions& options)
-      : ImageStage(feed, options), log_(options.outlines.has_value(), options.next_to, options.with_lines) {
+      : ImageStage(feed, options), log_(options.outlines.has_value(), options.spill_path, options.with_lines) {
     if (tracking_.detector() == nullptr) return;
     prime(feed);
     standing_.emplace(tracking_.detector()->scene());
@@ -201,11 +201,11 @@ class RecordedImage final : public ImageStage {
 
   void prime(const corridor::Feed& feed) {
     const std::vector<Frame> samples = feed.sample_beginning();
-    corridor::NextTo next_to;
-    next_to.run([&] { image_ambiguities_.inspect_at_beginning(samples); });
+    corridor::ParallelTasks parallel;
+    parallel.run([&] { image_ambiguities_.inspect_at_beginning(samples); });
     tracking_.detector()->prime(samples);
     if (!samples.empty()) open_again_ = feed.opener();
-    next_to.wait();
+    parallel.wait();
   }
 
   std::span<const Instant> unsearched(const Frame& frame) override {

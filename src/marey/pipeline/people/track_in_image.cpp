@@ -92,7 +92,7 @@ corridor::Summary track_people(const ImageFeed& given, const TrackOutput& output
   corridor::Feed feed = open(given, stabilise ? stabilise->feed_options() : given.how);
   corridor::Sinks sinks = sinks_of(output, std::move(own_sinks), feed, {.trail_of_centres = options.outlines.has_value()});
   ImagePeopleOptions own = options;
-  if (!output.tracks.empty()) own.next_to = output.tracks;
+  if (!output.tracks.empty()) own.spill_path = output.tracks;
   own.stabilise = stabilise && stabilise->steadies();
   own.with_lines = !output.overlay.empty();
   const auto stage = people_in_image(feed, own);

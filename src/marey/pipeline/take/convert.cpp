@@ -147,21 +147,21 @@ format::AuxiliaryData analog_of(const std::string& path, const std::string& from
                                 const format::WritePlan& plan, std::vector<std::string>& warnings) {
   if (!out.auxiliary_data) throw format::WrongFormat("{}: --analog is for C3D, which alone holds such channels", to);
   const auto reader = format::open_recording(path, format::format_to_read(path, Content::space));
-  const format::AuxiliaryData next_to = reader->info().next_to, &own = plan.info.next_to;
-  if (!next_to.any()) throw Error("{}: holds neither analog channels nor events; --analog wants a C3D file that does", path);
+  const format::AuxiliaryData auxiliary = reader->info().auxiliary, &own = plan.info.auxiliary;
+  if (!auxiliary.any()) throw Error("{}: holds neither analog channels nor events; --analog wants a C3D file that does", path);
   compare_with_analog(*reader, path, from, plan, warnings);
   if (own.any() && own.path != path)
     warnings.push_back(fmt::format("{}: its own {} analog channels and {} events are omitted; those of {} take their place", from,
                                    own.channels, own.events, path));
-  return next_to;
+  return auxiliary;
 }
 
 /// Force plates of a C3D file, or of another take, into a take.
-void copy_plates(const std::string& from, const Format& in, const format::AuxiliaryData& next_to, const std::string& to,
+void copy_plates(const std::string& from, const Format& in, const format::AuxiliaryData& auxiliary, const std::string& to,
                  std::vector<std::string>& warnings) {
   std::vector<ForcePlate> plates;
-  if (next_to.channels > 0) {
-    format::motion::AnalogData analog = format::motion::read_analog_data(next_to);
+  if (auxiliary.channels > 0) {
+    format::motion::AnalogData analog = format::motion::read_analog_data(auxiliary);
     plates = std::move(analog.plates);
     warnings.insert(warnings.end(), analog.warnings.begin(), analog.warnings.end());
   } else if (in.name == "take") {
@@ -195,8 +195,8 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
   if (!options.rig_names.empty() && !format::skeleton::is_bone_file(to))
     throw format::WrongFormat("{}: --rig-names is for bones: .bvh and .glb", to);
   if (auto message_text = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*message_text));
-  if (!options.analog.empty()) plan.info.next_to = analog_of(options.analog, from, to, out, plan, summary.warnings);
-  if (auto message_text = format::next_to_lost(plan.info.next_to, to, out)) summary.warnings.push_back(std::move(*message_text));
+  if (!options.analog.empty()) plan.info.auxiliary = analog_of(options.analog, from, to, out, plan, summary.warnings);
+  if (auto message_text = format::auxiliary_lost(plan.info.auxiliary, to, out)) summary.warnings.push_back(std::move(*message_text));
   const auto reader = opened(from, in, how, options.frames);
   const auto sink = options.rig_names.empty() ? format::create_recording(to, out, plan)
                                               : format::skeleton::create_bones(to, {.rig_names = options.rig_names});
@@ -212,7 +212,7 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     }
   }
   sink->finish();
-  if (out.name == "take") copy_plates(from, in, plan.info.next_to, to, summary.warnings);
+  if (out.name == "take") copy_plates(from, in, plan.info.auxiliary, to, summary.warnings);
   count(plan.info.header, frames, samples, summary);
   return summary;
 }

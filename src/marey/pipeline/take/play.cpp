@@ -11,12 +11,12 @@
 namespace marey::pipeline::take {
 namespace {
 
-using Stabilise = std::chrono::steady_clock;
+using MonotonicClock = std::chrono::steady_clock;
 
 /// Waits until then, and checks the token now and then; false if it is to stop.
-bool wait_until(Stabilise::time_point due, const std::stop_token& stop) {
+bool wait_until(MonotonicClock::time_point due, const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const auto now = Stabilise::now();
+    const auto now = MonotonicClock::now();
     if (now >= due) return true;
     std::this_thread::sleep_until(std::min(due, now + kStopSlice));
   }
@@ -55,7 +55,7 @@ class Player {
   PlaySummary finish(bool stopped) {
     for (const auto& sink : sinks_) sink->finish();
     summary_.stopped = stopped;
-    summary_.seconds = std::chrono::duration<double>(Stabilise::now() - began_).count();
+    summary_.seconds = std::chrono::duration<double>(MonotonicClock::now() - began_).count();
     return std::move(summary_);
   }
 
@@ -64,7 +64,7 @@ class Player {
     if (header.name.empty()) header.name = options_.name;
     for (const auto& sink : sinks_) sink->begin(header);
     period_ = duration_from_seconds(1 / header.rate_hz);
-    began_ = origin_ = Stabilise::now();
+    began_ = origin_ = MonotonicClock::now();
   }
 
   /// A later round continues where the last one ended: its indices and its times are moved.
@@ -73,13 +73,13 @@ class Player {
     time_shift_ = next_time_ - first.time.time_since_epoch();
     if (summary_.rounds == 1) index_shift_ = 0, time_shift_ = Duration::zero();
     const Timestamp time = first.time + time_shift_;
-    const auto due = summary_.rounds == 1 ? Stabilise::now() : std::max(Stabilise::now(), due_at(time));
+    const auto due = summary_.rounds == 1 ? MonotonicClock::now() : std::max(MonotonicClock::now(), due_at(time));
     zero_ = time;
     origin_ = due;
     if (clock_ != nullptr) clock_->set(time, std::chrono::nanoseconds(due.time_since_epoch()).count(), options_.speed);
   }
 
-  Stabilise::time_point due_at(Timestamp time) const {
+  MonotonicClock::time_point due_at(Timestamp time) const {
     return origin_ + std::chrono::nanoseconds(std::llround(static_cast<double>((time - zero_).count()) / options_.speed));
   }
 
@@ -95,7 +95,7 @@ class Player {
       return !hooks_.stop.stop_requested();
     }
     const auto due = due_at(instant.time);
-    const auto now = Stabilise::now();
+    const auto now = MonotonicClock::now();
     if (now - due > kTooLate && tracking && due_at(*tracking + time_shift_) <= now) {
       ++summary_.skipped;
       return !hooks_.stop.stop_requested();
@@ -128,7 +128,7 @@ class Player {
   stream::CaptureClock* clock_;
   const Hooks& hooks_;
   PlaySummary summary_;
-  Stabilise::time_point began_, origin_;
+  MonotonicClock::time_point began_, origin_;
   Timestamp zero_{};  // is due at the origin
   Duration period_{}, time_shift_{}, next_time_{};
   std::int64_t index_shift_ = 0, next_index_ = 0;

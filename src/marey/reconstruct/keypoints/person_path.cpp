@@ -28,11 +28,11 @@ class PathFinder {
     PersonPath path;
     path.points.resize(set_.points.size());
     smooth_all(path);
-    if (interchange(path)) smooth_all(path);
+    if (swap_sides(path)) smooth_all(path);
     if (options_.lasting_s > 0) take_lasting(path);
     learn_noise(path);
     smooth_all(path);
-    if (interchange(path)) {
+    if (swap_sides(path)) {
       learn_noise(path);
       smooth_all(path);
     }
@@ -145,7 +145,7 @@ class PathFinder {
   }
 
   /// Whether any view is read otherwise than before.
-  bool interchange(const PersonPath& path) {
+  bool swap_sides(const PersonPath& path) {
     bool changed = false;
     const double minimum = options_.swap_gain * options_.swap_gain;
     for (std::size_t t = 0; t < track_.instants.size(); ++t) {

@@ -21,7 +21,7 @@ constexpr double kForesight = 1.5;    // s that people use later frames for othe
 constexpr double kPass = 0.8;         // m at which they like to pass each other
 constexpr double kSwerve = 3.5;       // m/s² that they spend on it
 constexpr int kRounds = 6;            // over all pairs that are too fast towards each other
-constexpr double kTrack = 1.2;        // 1/s: how a gap to a person who is followed closes
+constexpr double kCloseGap = 1.2;        // 1/s: how a gap to a person who is followed closes
 constexpr double kPtz = 5;            // rad/s
 constexpr double kStature = 1.79;     // m; decides the length of strides
 constexpr double kWatchBelow = 0.6;   // m/s; slower people face the ball
@@ -64,7 +64,7 @@ Vector<2> MatchMotion::required_velocity(std::size_t i, const MatchIntent& inten
   if (intent.speed <= 0) return Vector<2>::Zero();
   const Vector<2> to_target = intent.target - begin_[i].location;
   const double top = std::min(intent.speed, bodies_[i].top_speed);
-  if (intent.target_velocity.squaredNorm() > 0.25) return clamped_to(intent.target_velocity + kTrack * to_target, top);
+  if (intent.target_velocity.squaredNorm() > 0.25) return clamped_to(intent.target_velocity + kCloseGap * to_target, top);
   const double distance = to_target.norm();
   if (distance < 0.05) return Vector<2>::Zero();
   return to_target / distance * std::min(top, std::sqrt(2 * kApproach * distance));

@@ -29,7 +29,7 @@ constexpr double kBallSpeed = 15;    // m/s, of a pass
 constexpr double kReach = 1.2;       // m; the ball is a player's within it
 constexpr double kWanderTime = 9;    // s
 constexpr double kWander = 2.4;      // m
-constexpr double kNextTo = 0.55;     // m between two who fight for the ball
+constexpr double kDuelDistance = 0.55;     // m between two who fight for the ball
 constexpr double kSprint = 9.5;      // m/s; as fast as possible
 constexpr double kOutOfPlay = 0.15;  // of all times that a player gives the ball away
 constexpr double kLost = 0.24;       // of all passes
@@ -291,7 +291,7 @@ void MatchPlay::chase(People people) {
   const Vector<2> ahead = (goal - by.location).normalized();
   const double left = ahead.x() * (people[index(presser)].location - by.location).y() -
                       ahead.y() * (people[index(presser)].location - by.location).x();
-  const Vector<2> aside = (left > 0 ? kNextTo : -kNextTo) * Vector<2>(-ahead.y(), ahead.x());
+  const Vector<2> aside = (left > 0 ? kDuelDistance : -kDuelDistance) * Vector<2>(-ahead.y(), ahead.x());
   intents_[index(presser)] = {by.location + aside + 0.2 * ahead, by.velocity, 7.5};
 }
 

@@ -53,12 +53,12 @@ TEST(MatchGround, ACrownedPitchIsPaintedAndClickedWhereItIsSeen) {
   };
   int bright = 0, bright_on_plane = 0, requested = 0;
   for (double x = 30; x < 50; x += 0.5) {
-    const auto on = view.pixel({x, -68}), level_on = plane.pixel({x, -68}), next_to = view.pixel({x, -67});
+    const auto on = view.pixel({x, -68}), level_on = plane.pixel({x, -68}), off_line = view.pixel({x, -67});
     const auto detected = [&](const std::optional<Vector<2>>& pixel) { return pixel && view.camera()->in_image(*pixel); };
-    if (!detected(on) || !detected(level_on) || !detected(next_to)) continue;
+    if (!detected(on) || !detected(level_on) || !detected(off_line)) continue;
     ++requested;
-    bright += level(*on) > level(*next_to) + 30 ? 1 : 0;
-    bright_on_plane += level(*level_on) > level(*next_to) + 30 ? 1 : 0;
+    bright += level(*on) > level(*off_line) + 30 ? 1 : 0;
+    bright_on_plane += level(*level_on) > level(*off_line) + 30 ? 1 : 0;
   }
   EXPECT_GT(requested, 20);
   EXPECT_EQ(bright, requested);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kColumns = 8, kRows = 16;  // of the raster of a box
 constexpr double kBodyFraction = 0.75;   // of the width of a box that its person fills: people see past each other's elbows
-constexpr double kMinValue = 4;          // px; a box lower than this is not a person's
+constexpr double kMinHeight = 4;          // px; a box lower than this is not a person's
 
 struct Located {
   ObservedPerson detected;
@@ -82,7 +82,7 @@ std::optional<Box> box_at(const GroundView& view, const Vector<2>& at, double st
   const auto foot = sight(view, {at.x(), at.y(), 0}), head = sight(view, {at.x(), at.y(), stature});
   if (!foot || !head || !view.camera()->in_image(foot->at) || !view.camera()->in_image(head->at)) return std::nullopt;
   const double height = foot->at.y() - head->at.y();
-  if (height < kMinValue) return std::nullopt;
+  if (height < kMinHeight) return std::nullopt;
   return Box::from_centre((foot->at + head->at) / 2, 0.3 * height, height);
 }
 
@@ -144,7 +144,7 @@ std::vector<ObservedPerson> people_in_view(const GroundView& view, std::span<con
     if (!located) continue;
     located->detected.person = static_cast<int>(i);
     located->detected.shown = geometry::intersection(located->detected.whole, image);
-    if (!located->detected.shown.empty() && located->detected.whole.height >= kMinValue) all.push_back(*located);
+    if (!located->detected.shown.empty() && located->detected.whole.height >= kMinHeight) all.push_back(*located);
   }
   std::vector<ObservedPerson> detected;
   for (const Located& located : all) {

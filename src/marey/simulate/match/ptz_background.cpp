@@ -294,11 +294,11 @@ cv::Mat PtzBackground::paint(const Camera& camera) const {
     for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
       constexpr double kWorn = 3;  // m
       if (appearance_.missing > 0 && value_noise(line.points[i] / kWorn, seed_ + 21) < worn_level) continue;
-      const auto next_to = [&](std::size_t k, double side) {
+      const auto edge_point = [&](std::size_t k, double side) {
         const Vector<2>& along = line.tangents[k];
         return corner(line.points[k] + side * appearance_.width / 2 * Vector<2>(-along.y(), along.x()));
       };
-      const auto a = next_to(i, 1), b = next_to(i + 1, 1), c = next_to(i + 1, -1), d = next_to(i, -1);
+      const auto a = edge_point(i, 1), b = edge_point(i + 1, 1), c = edge_point(i + 1, -1), d = edge_point(i, -1);
       if (!a || !b || !c || !d) continue;
       const std::array<cv::Point, 4> four{*a, *b, *c, *d};
       cv::fillConvexPoly(fine, four.data(), 4, cv::Scalar(255), cv::LINE_8, kFixed);

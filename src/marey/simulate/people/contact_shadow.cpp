@@ -37,11 +37,11 @@ void darken(const Sole& sole, const Projection& projection, double strength, con
             cv::Mat& cr) {
   constexpr double kStep = 0.1;  // m
   const Vector<2> middle = (sole.heel + sole.toe) / 2;
-  const auto detected = projection({middle.x(), middle.y(), 0}), next_to = projection({middle.x() + kStep, middle.y(), 0}),
+  const auto detected = projection({middle.x(), middle.y(), 0}), aside = projection({middle.x() + kStep, middle.y(), 0}),
              behind = projection({middle.x(), middle.y() + kStep, 0});
-  if (!detected || !next_to || !behind) return;
+  if (!detected || !aside || !behind) return;
   Matrix<2> by_ground;
-  by_ground << (next_to->at - detected->at) / kStep, (behind->at - detected->at) / kStep;
+  by_ground << (aside->at - detected->at) / kStep, (behind->at - detected->at) / kStep;
   if (!(std::abs(by_ground.determinant()) > 1e-9)) return;
   const Matrix<2> by_pixel = by_ground.inverse();
   const double deviation = kReach + kByHeight * sole.height;

@@ -213,8 +213,8 @@ std::optional<Sprite> PeopleRenderer::sprite_of(const PosedFigure& person, const
   }
   // The sun's side of the image: the direction of a step towards it.
   const Vector<2> lit = location + 0.1 * options_.sun.head<2>();
-  const auto next_to = projection_({lit.x(), lit.y(), 0});
-  const double side = next_to && next_to->at.x() < foot->at.x() ? -1 : 1;
+  const auto towards_sun = projection_({lit.x(), lit.y(), 0});
+  const double side = towards_sun && towards_sun->at.x() < foot->at.x() ? -1 : 1;
   for (std::size_t part = 0; part < kFigureParts; ++part) {
     for (int shade = 0; shade < kShades; ++shade) {
       sprite.palette[1 + kShades * part + static_cast<std::size_t>(shade)] =

@@ -62,12 +62,12 @@ class Street {
     walker.id = next_id_++;
     const double depth = random_.uniform(options_.nearest, options_.farthest);
     const double half = 0.5 * options_.width / options_.focal * depth;
-    const bool next_to = !walkers_.empty() && random_.chance(options_.group_fraction);
+    const bool in_group = !walkers_.empty() && random_.chance(options_.group_fraction);
     const double side = random_.chance(0.5) ? 1 : -1;
     walker.location = on_ground({anywhere ? random_.uniform(-half, half) : side * (half + 0.5), depth});
     walker.speed = std::max(0.5, random_.gaussian(1.3, 0.3));
     walker.heading = (side > 0 ? std::numbers::pi : 0) + random_.gaussian(0, 0.5);
-    if (next_to && anywhere) {
+    if (in_group && anywhere) {
       const ScenePerson& friend_of = walkers_.back();
       walker.location = friend_of.location + Vector<2>(random_.gaussian(0, 0.3), random_.uniform(0.5, 0.9));
       walker.speed = friend_of.speed;

@@ -38,7 +38,7 @@ struct NamedPeopleSituation {
 /// All situations with the names that the command line uses.
 std::span<const NamedPeopleSituation> people_situations();
 
-enum class LightChange { stabilise, gradual, sudden };
+enum class LightChange { constant, gradual, sudden };
 
 struct PeopleVideoOptions {
   cv::Size size{768, 576};    ///< px
@@ -49,7 +49,7 @@ struct PeopleVideoOptions {
   double pace = 1;            ///< factor on all speeds
   double noise = 2;           ///< standard deviation of luma, grey levels
   double shake_px = 0;        ///< the camera shakes: what pan and tilt each move the image by, root mean square
-  LightChange light = LightChange::stabilise;
+  LightChange light = LightChange::constant;
   bool shadows = true;
   ImageDegradation degradation;        ///< what lens, sharpening and codec make of the image
   bool own_clothes = false;            ///< every person in clothes of their own; else in those of two teams

@@ -12,12 +12,12 @@
 namespace marey::simulate::square {
 namespace {
 
-constexpr int kMaxCount = 64;
+constexpr int kMaxCameras = 64;
 
 }  // namespace
 
 Rig square_cameras(int cameras, double rate_hz, const SquareOptions& square, std::uint64_t seed) {
-  if (cameras < 1 || cameras > kMaxCount) throw Error("a square with {} cameras; 1 to {} are possible", cameras, kMaxCount);
+  if (cameras < 1 || cameras > kMaxCameras) throw Error("a square with {} cameras; 1 to {} are possible", cameras, kMaxCameras);
   Random random(seed * 40503 + 11);
   Rig rig;
   const Vector<2> middle(square.length / 2, square.width / 2);

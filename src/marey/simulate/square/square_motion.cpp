@@ -13,7 +13,7 @@ constexpr double kArrived = 0.7;     // m from a goal
 constexpr double kHesitation = 0.6;  // s in which people take up the velocity they want
 constexpr double kMaxPush = 3;       // m/s²
 constexpr double kApart = 0.45;      // m between the middles of two who pass each other
-constexpr double kNextTo = 0.55;     // m between those of a group
+constexpr double kGroupSpacing = 0.55;     // m between those of a group
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void SquareMotion::arrive() {
   const Vector<2> left(-ahead.y(), ahead.x());
   for (int i = 0; i < size; ++i) {
     Walker walker = first;
-    walker.slot = {-random_.uniform(0, 0.4) * (i % 2), kNextTo * (i % 2 == 0 ? i / 2 : -(i + 1) / 2)};
+    walker.slot = {-random_.uniform(0, 0.4) * (i % 2), kGroupSpacing * (i % 2 == 0 ? i / 2 : -(i + 1) / 2)};
     walker.pace = pace;
     walker.person.id = next_id_++;
     walker.person.location = start + walker.slot.y() * left;

@@ -67,8 +67,8 @@ std::span<const BodyPose> BodyTracker::step(Timestamp now, std::span<const BodyT
   corrections_.clear();
   predict(now);
   take_labelled(points);
-  inspect_near(points);
-  inspect_everywhere(now, points);
+  search_near(points);
+  search_everywhere(now, points);
   for (int body = 0; body < std::ssize(tracked_); ++body) {
     Tracked& one = tracked_[static_cast<std::size_t>(body)];
     if (!one.measured) continue;
@@ -157,7 +157,7 @@ void BodyTracker::take_labelled(std::span<const BodyTrackPoint> points) {
   }
 }
 
-void BodyTracker::inspect_near(std::span<const BodyTrackPoint> points) {
+void BodyTracker::search_near(std::span<const BodyTrackPoint> points) {
   pairs_.clear();
   int rows = 0;
   std::vector<int> first_row(tracked_.size(), assign::kNoIndex);
@@ -247,7 +247,7 @@ void BodyTracker::settle_near(int body, std::span<const BodyTrackPoint> points) 
   motion.world_from_body = one.fit->world_from_body;
 }
 
-void BodyTracker::inspect_everywhere(Timestamp now, std::span<const BodyTrackPoint> points) {
+void BodyTracker::search_everywhere(Timestamp now, std::span<const BodyTrackPoint> points) {
   std::vector<int> required, names;
   for (int i = 0; i < std::ssize(tracked_) && std::ssize(required) < kMaxInspectedFor; ++i) {
     const int body = (next_initialise_ + i) % static_cast<int>(tracked_.size());

@@ -112,10 +112,10 @@ class BodyTracker {
 
   void predict(Timestamp now);
   void take_labelled(std::span<const BodyTrackPoint> points);
-  void inspect_near(std::span<const BodyTrackPoint> points);
+  void search_near(std::span<const BodyTrackPoint> points);
   void settle_near(int body, std::span<const BodyTrackPoint> points);
   bool measure(int body, std::span<const BodyTrackPoint> points, std::vector<int> candidates);
-  void inspect_everywhere(Timestamp now, std::span<const BodyTrackPoint> points);
+  void search_everywhere(Timestamp now, std::span<const BodyTrackPoint> points);
   void accept(int body, std::span<const BodyTrackPoint> points, const PoseCandidate& candidate, std::span<const int> names);
   ObservedRotation observed_rotation(int body, Timestamp now) const;
   static ObservedRotation last_sure(const Tracked& body) { return body.back ? body.back->before : body.observed; }

@@ -48,7 +48,7 @@ std::vector<const TrackColumns*> tracks_of(const Recording& recording, const std
 
 /// Instants at which at least `fewest` of the markers are measured, evenly spread where there are many.
 std::vector<Locations> instants_with(const std::vector<const TrackColumns*>& tracks, std::size_t instants,
-                                     std::size_t lowest_count) {
+                                     std::size_t min_detected) {
   std::vector<Locations> found;
   for (std::size_t i = 0; i < instants; ++i) {
     Locations locations(tracks.size());
@@ -59,7 +59,7 @@ std::vector<Locations> instants_with(const std::vector<const TrackColumns*>& tra
       locations[m] = tracks[m]->position(*row);
       ++detected;
     }
-    if (detected >= lowest_count) found.push_back(std::move(locations));
+    if (detected >= min_detected) found.push_back(std::move(locations));
   }
   if (found.size() <= kMaxInstants) return found;
   std::vector<Locations> spread;

@@ -6,7 +6,7 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr std::int32_t kMaxAppearance = 80;  // at a chain's distances, evenly spread over its life
+constexpr std::int32_t kMaxSamples = 80;  // at a chain's distances, evenly spread over its life
 
 }  // namespace
 
@@ -63,7 +63,7 @@ NamedChains::Fits NamedChains::fits_of_chain(int chain, const DistanceModel& mod
   const Chain& its = chains_[static_cast<std::size_t>(chain)];
   Fits fits(names_, 0);
   int count = 0;
-  const std::int32_t step = std::max(1, its.points / kMaxAppearance);
+  const std::int32_t step = std::max(1, its.points / kMaxSamples);
   for (const int t : its.tracklets) add_fits(tracklets_[static_cast<std::size_t>(t)], chain, step, model, neighbours, fits, count);
   for (double& fit : fits) fit /= std::max(count, 1);
   return fits;
@@ -73,7 +73,7 @@ NamedChains::Fits NamedChains::fits_of_tracklet(int tracklet, const DistanceMode
   const Tracklet& its = tracklets_[static_cast<std::size_t>(tracklet)];
   Fits fits(names_, 0);
   int count = 0;
-  add_fits(its, chain_of_[static_cast<std::size_t>(tracklet)], std::max(1, its.length() / kMaxAppearance), model, neighbours, fits,
+  add_fits(its, chain_of_[static_cast<std::size_t>(tracklet)], std::max(1, its.length() / kMaxSamples), model, neighbours, fits,
            count);
   for (double& fit : fits) fit /= std::max(count, 1);
   return fits;

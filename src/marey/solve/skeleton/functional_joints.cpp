@@ -17,7 +17,7 @@ constexpr double kMinTurn = 0.02;  // a system of which another direction is no 
 // What skin does repeats with the joint's angles, so that 2,000 instants are worth no more than these: with 24 simulated people's
 // skin the mean deviation is then that of the errors, 17 mm (functional_joints_test.cpp).
 constexpr double kIndependent = 2.5;
-constexpr double kRarelyRotated = 0.2;  // rad
+constexpr double kMinRotation = 0.2;  // rad
 
 /// The child seen from the parent at the instants that show both.
 std::vector<Rigid3> relative_poses(SegmentPoses parent, SegmentPoses child) {
@@ -142,7 +142,7 @@ std::optional<FunctionalAxis> functional_axis(SegmentPoses parent, SegmentPoses 
     if (!found) return std::nullopt;
     return Vector<3>(found->direction.dot(hinge->direction) < 0 ? -found->direction : found->direction);
   });
-  if (!deviation || rotated < kRarelyRotated) return std::nullopt;
+  if (!deviation || rotated < kMinRotation) return std::nullopt;
   return FunctionalAxis{hinge->point, hinge->direction, std::min(*deviation, std::numbers::pi / 2), rotated,
                         static_cast<int>(relative.size())};
 }

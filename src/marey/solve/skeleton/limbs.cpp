@@ -38,10 +38,10 @@ void PoseSolver::find_limbs() {
       const Vector<3> along = above.joint.joint_from_segment * segment.joint.parent_from_joint.translation;
       if (along.norm() < 1e-3) continue;
       Limb limb{
-          .ball = b, .hinge = *hinge.coordinate, .next_to = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
+          .ball = b, .hinge = *hinge.coordinate, .joint_axes = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
       for (const JointAxis& axis : std::span(segment.joint.axes).subspan(1)) {
         if (axis.rotations && axis.coordinate && skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].free())
-          limb.next_to.push_back(*axis.coordinate);
+          limb.joint_axes.push_back(*axis.coordinate);
       }
       const auto hinge_at = &segment - skeleton.segments.data();
       for (std::size_t s = 0; s < skeleton.segments.size(); ++s) {
@@ -87,8 +87,8 @@ std::vector<SkeletonState> PoseSolver::rotated_about(const Limb& limb) const {
     from.balls[limb.ball] = from.balls[limb.ball] * Eigen::AngleAxisd(turn, limb.along).toRotationMatrix();
     from.coordinates[static_cast<std::size_t>(limb.hinge)] = bent;
     all.push_back(from);
-    if (limb.next_to.empty()) continue;
-    for (const int c : limb.next_to) from.coordinates[static_cast<std::size_t>(c)] = 0;
+    if (limb.joint_axes.empty()) continue;
+    for (const int c : limb.joint_axes) from.coordinates[static_cast<std::size_t>(c)] = 0;
     all.push_back(std::move(from));
   }
   for (SkeletonState& state : all) articulation_.skeleton().couple(state.coordinates);
@@ -226,12 +226,12 @@ void PoseSolver::remember(double seconds, Detected detected) {
 /// Beside hidden markers the others sit where they were found before.
 void PoseSolver::shift_markers(double seconds, Detected detected) {
   const auto& markers = articulation_.skeleton().markers;
-  next_to_.assign(missed_s_.size(), false);
+  near_missed_.assign(missed_s_.size(), false);
   for (std::size_t j = 0; j < detected.size(); ++j) {
     if (detected[j] || away_s_[j] >= options_.hidden_s) continue;
-    for (const std::size_t s : near_[static_cast<std::size_t>(markers[j].segment)]) next_to_[s] = true;
+    for (const std::size_t s : near_[static_cast<std::size_t>(markers[j].segment)]) near_missed_[s] = true;
   }
-  for (std::size_t s = 0; s < missed_s_.size(); ++s) missed_s_[s] = next_to_[s] ? missed_s_[s] + seconds : 0;
+  for (std::size_t s = 0; s < missed_s_.size(); ++s) missed_s_[s] = near_missed_[s] ? missed_s_[s] + seconds : 0;
   for (std::size_t j = 0; j < shifts_.size(); ++j) {
     const double missed = missed_s_[static_cast<std::size_t>(markers[j].segment)];
     shifts_[j] =

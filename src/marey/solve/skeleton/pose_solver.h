@@ -122,7 +122,7 @@ class PoseSolver {
   struct Limb {
     std::size_t ball = 0;
     int hinge = 0;             ///< coordinate
-    std::vector<int> next_to;  ///< coordinates of the hinge's joint besides
+    std::vector<int> joint_axes;  ///< coordinates of the hinge's joint besides
     Vector<3> along;           ///< in the ball's frame
     Matrix<3> rest;            ///< of the ball
     double at_limit_s = 0;
@@ -182,7 +182,7 @@ class PoseSolver {
   SkeletonState whole_;         // the last pose in which none was missed
   bool returned_ = false;
   std::vector<std::vector<std::size_t>> near_;  // of each segment: itself, its parent and its children
-  std::vector<bool> next_to_;
+  std::vector<bool> near_missed_;
   std::vector<double> missed_s_;           // of each segment: since when one of the markers near it is hidden
   std::vector<Vector<3>> found_, shifts_;  // of each marker: where it sat, from where the skeleton has it, and is taken to sit
   PoseEquations equations_;

@@ -16,7 +16,7 @@ constexpr double kSameRad = 0.035;  // 2°: two poses are one
 constexpr double kOtherRad = 0.35;  // 20°: they are two
 constexpr double kHiddenS = 2;      // markers that are away for longer are gone
 constexpr double kInspectS = 0.1;   // between frames in which limbs are turned about
-constexpr std::size_t kMaxAppearance = 150;
+constexpr std::size_t kMaxInspections = 150;
 constexpr int kMaxRotations = 4;  // a limb
 constexpr double kClear = 10;     // σ² of a marker, in sum: less decides nothing
 
@@ -138,7 +138,7 @@ class FoldSettler {
 
   void try_rotated(std::size_t limb) {
     const std::size_t step =
-        std::max(static_cast<std::size_t>(std::max(1.0, kInspectS * rate_hz_)), rows_.size() / kMaxAppearance + 1);
+        std::max(static_cast<std::size_t>(std::max(1.0, kInspectS * rate_hz_)), rows_.size() / kMaxInspections + 1);
     std::vector<std::pair<double, std::size_t>> appearances;
     for (std::size_t f = step / 2; f < rows_.size(); f += step) {
       if (const double gain = rotated(limb, f).second; gain > 0) appearances.emplace_back(gain, f);

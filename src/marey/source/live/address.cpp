@@ -104,9 +104,9 @@ void AddressOptions::size(const char* name, int& width, int& height) {
   if (given == nullptr) return;
   const auto sides = pieces(*given, 'x');
   const auto side = [&](std::size_t i) { return i < sides.size() ? parsed<int>(sides[i]) : std::nullopt; };
-  constexpr int kMaxCount = 16384;
+  constexpr int kMaxSide = 16384;
   const auto w = side(0), h = side(1);
-  if (sides.size() != 2 || !w || !h || *w < 1 || *h < 1 || *w > kMaxCount || *h > kMaxCount)
+  if (sides.size() != 2 || !w || !h || *w < 1 || *h < 1 || *w > kMaxSide || *h > kMaxSide)
     refuse(name, "WIDTHxHEIGHT in px, as 640x480");
   width = *w;
   height = *h;

@@ -189,10 +189,10 @@ TEST(Node, ReportsOlderNodeAndLeavesItUnset) {
 
 TEST(Node, ReportsMissingNode) {
   Node node(1);
-  const auto no_person = keep_connected("nobody", connect_node(node.location("nobody")), steady_time());
-  ASSERT_TRUE(becomes_true([&] { return !no_person->health().trouble.empty(); }));
-  EXPECT_NE(no_person->health().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos)
-      << no_person->health().trouble;
+  const auto unknown = keep_connected("nobody", connect_node(node.location("nobody")), steady_time());
+  ASSERT_TRUE(becomes_true([&] { return !unknown->health().trouble.empty(); }));
+  EXPECT_NE(unknown->health().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos)
+      << unknown->health().trouble;
   EXPECT_THROW(Node(2, node.port()), Error) << "the ports are taken";
   NodeAddress elsewhere = node.location("");
   elsewhere.port = 1;

@@ -68,7 +68,7 @@ void warp_row(const cv::Mat& image, const Matrix<3>& h, int y, Level* out) {
 
 }  // namespace
 
-void warp_almost(const cv::Mat& image, const Matrix<3>& picture_from_result, cv::Mat& result) {
+void fast_warp(const cv::Mat& image, const Matrix<3>& picture_from_result, cv::Mat& result) {
   for (int y = 0; y < image.rows; ++y) {
     if (image.depth() == CV_16U) {
       warp_row(image, picture_from_result, y, result.ptr<std::uint16_t>(y));

@@ -105,7 +105,7 @@ cv::Mat StandingScene::shrunk(const Image& image) const {
 bool StandingScene::take_corners(const cv::Mat& from) {
   Corners corners;
   corners.at = corners_of(from, options_.corners, options_.min_corner);
-  if (std::ssize(corners.at) < options_.lowest_count) return false;
+  if (std::ssize(corners.at) < options_.min_corners) return false;
   corners.pyramid = pyramid_of(from, true);
   if (corners_.size() == kMaxKinds) corners_.erase(corners_.begin() + 1);  // those of the beginning lie where the rest does
   corners_.push_back(std::move(corners));
@@ -143,7 +143,7 @@ std::vector<TrackedPosition> StandingScene::track_corners(const Corners& corners
 
 std::optional<SceneFit> StandingScene::fit(const std::vector<TrackedPosition>& locations, int within, std::size_t all) const {
   const auto found = fit_motion(locations, view_, options_.agree);
-  if (!found || found->agreeing < options_.lowest_count || found->agreeing < options_.fraction * within) return std::nullopt;
+  if (!found || found->agreeing < options_.min_corners || found->agreeing < options_.fraction * within) return std::nullopt;
   if (found->agreeing < options_.fraction_of_all * static_cast<double>(all)) return std::nullopt;
   if (found->motion.turn.head<2>().norm() * view_.focal > options_.farthest * size_.width) return std::nullopt;
   if (found->spread < options_.min_spread * size_.height) return std::nullopt;
@@ -228,7 +228,7 @@ bool StandingScene::remember(const cv::Mat& now, const SceneMotion& motion) {
   if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
   ++in_mean_;
   cv::accumulateWeighted(at_rest(now, motion), mean_, std::max(kMeanFraction, 1.0 / in_mean_));
-  if (!appearance_learned_ && in_mean_ == kMinMean) {
+  if (!learned_from_several_ && in_mean_ == kMinMean) {
     cv::Mat levels;
     mean_.convertTo(levels, CV_8U);
     appearances_ = SceneAppearance(levels);  // in which those who walk are fainter than in the first image
@@ -258,7 +258,7 @@ std::optional<SceneMotion> StandingScene::find_from_before(const cv::Mat& now, c
     before_.at = corners_of(before_image_, options_.corners, options_.min_corner);
     before_.pyramid = pyramid_of(before_image_, true);
   }
-  if (std::ssize(before_.at) < options_.lowest_count) return std::nullopt;
+  if (std::ssize(before_.at) < options_.min_corners) return std::nullopt;
   auto found = find_from(before_, pyramid, {});
   if (!found) return std::nullopt;
   const bool changed = found->agreeing < kStillThere * static_cast<double>(before_.at.size());

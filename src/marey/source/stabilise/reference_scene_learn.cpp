@@ -129,7 +129,7 @@ bool StandingScene::learn(std::span<const Image> images) {
   corners_.clear();
   last_ = {};
   appearances_ = SceneAppearance(median);
-  appearance_learned_ = true;
+  learned_from_several_ = true;
   return take_corners(median) || appearances_.can_be_found();
 }
 

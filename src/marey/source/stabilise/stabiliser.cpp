@@ -33,11 +33,11 @@ Matrix<3> of_chroma(const Matrix<3>& homography) {
 Image at_rest(const Image& image, const Image& under, const Matrix<3>& homography) {
   const Image& ground = under.size() == image.size() && under.is_colour() == image.is_colour() ? under : image;
   cv::Mat luma = ground.luma().clone();
-  warp_almost(image.luma(), homography, luma);
+  fast_warp(image.luma(), homography, luma);
   if (!image.is_colour()) return Image(luma);
   cv::Mat cb = ground.cb().clone(), cr = ground.cr().clone();
-  warp_almost(image.cb(), of_chroma(homography), cb);
-  warp_almost(image.cr(), of_chroma(homography), cr);
+  fast_warp(image.cb(), of_chroma(homography), cb);
+  fast_warp(image.cr(), of_chroma(homography), cr);
   return {luma, cb, cr, image.range()};
 }
 

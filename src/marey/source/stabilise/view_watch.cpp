@@ -179,13 +179,13 @@ void ViewWatch::add(const Frame& frame) {
     shrink_ = static_cast<double>(size_.width) / small.cols;
     lens_ = {1.5 * small.cols, {(small.cols - 1) / 2.0, (small.rows - 1) / 2.0}};
     previous_ = {};
-    ambiguity_s_.reset();
+    possible_cut_s_.reset();
   }
   const bool cut = was_cut(frame.image, time);
   if (cut || other_size) {
     begin(shrunk_to(frame.image.luma(), kAcross), time);
     next_s_ = time + kEvery_s;
-  } else if (time >= next_s_ && !ambiguity_s_) {
+  } else if (time >= next_s_ && !possible_cut_s_) {
     track_scene(shrunk_to(frame.image.luma(), kAcross), time);
     next_s_ = time + kEvery_s;
   }
@@ -199,14 +199,14 @@ bool ViewWatch::was_cut(const Image& image, double time) {
   const double change = previous_.empty() ? 0 : change_between(previous_thumb_, thumb);
   previous_thumb_ = thumb;
   const double before = std::exchange(previous_change_, change);
-  const bool stands_out = change > kCutChange && change > kCutStandsOut * default_change_ && change > kCutMore * before;
-  default_change_ += (std::min(change, kCutChange) - default_change_) * 0.1;
-  const std::optional<double> ambiguous_s = std::exchange(ambiguity_s_, std::nullopt);
-  if (ambiguous_s && before > kCutAlone * change) {
-    cuts_.push_back(*ambiguous_s);
+  const bool stands_out = change > kCutChange && change > kCutStandsOut * typical_change_ && change > kCutMore * before;
+  typical_change_ += (std::min(change, kCutChange) - typical_change_) * 0.1;
+  const std::optional<double> cut_s = std::exchange(possible_cut_s_, std::nullopt);
+  if (cut_s && before > kCutAlone * change) {
+    cuts_.push_back(*cut_s);
     return true;
   }
-  if (stands_out && shows_another_scene(image)) ambiguity_s_ = time;
+  if (stands_out && shows_another_scene(image)) possible_cut_s_ = time;
   return false;
 }
 

@@ -81,8 +81,8 @@ class ViewWatch {
   View anchor_, last_;  // what images are compared with first; the last one whose motion was known
   Image previous_;
   cv::Mat previous_thumb_;
-  double default_change_ = 0, previous_change_ = 0;
-  std::optional<double> ambiguity_s_;  // when the last image came, where it may be the first of another scene
+  double typical_change_ = 0, previous_change_ = 0;
+  std::optional<double> possible_cut_s_;  // when the last image came, where it may be the first of another scene
   double next_s_ = 0, lost_since_s_ = -1;
   int segment_ = 0;
   std::vector<double> cuts_;

@@ -33,9 +33,9 @@ std::vector<Detected> beginnings(const BallObservations& time_step, const Ground
       const BallSighting& one = view.detected[i];
       const double density = false_density(one, view, ground, options);
       if (one.on_person || density > kPaint) continue;
-      const auto ray = ground.camera()->ray(one.pixel), next_to = ground.camera()->ray(one.pixel + Vector<2>(1, 0));
-      if (!ray || !next_to) continue;
-      const double angle = (ray->direction.normalized() - next_to->direction.normalized()).norm();
+      const auto ray = ground.camera()->ray(one.pixel), neighbour = ground.camera()->ray(one.pixel + Vector<2>(1, 0));
+      if (!ray || !neighbour) continue;
+      const double angle = (ray->direction.normalized() - neighbour->direction.normalized()).norm();
       all.push_back({static_cast<int>(v), static_cast<int>(i), one.score - density, *ray, angle});
     }
   }

@@ -45,8 +45,8 @@ std::optional<double> fraction_observed(const Vector<3>& location, const Walk& w
     ++inspected;
     detected += observed_at(location, time_steps[walk.at(i)], views, options, local_clutter) != 0 ? 1 : 0;
   }
-  constexpr std::ptrdiff_t kMinValue = 5;  // instants
-  if (inspected < kMinValue) return std::nullopt;
+  constexpr std::ptrdiff_t kMinInstants = 5;  // instants
+  if (inspected < kMinInstants) return std::nullopt;
   return static_cast<double>(detected) / static_cast<double>(inspected);
 }
 

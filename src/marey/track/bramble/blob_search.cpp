@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCell = 0.5;         // m
 constexpr double kApart = 0.8;        // m
-constexpr std::size_t kMaxCount = 6;  // candidates at an instant
+constexpr std::size_t kMaxCandidates = 6;  // candidates at an instant
 constexpr std::size_t kMaxCells = 60'000;
 constexpr int kMinRows = 3;            // of the grid: a person seen smaller has no shape
 constexpr double kEnoughInGrid = 0.6;  // of a person, that a camera must see
@@ -85,7 +85,7 @@ std::vector<BlobSearch::Candidate> BlobSearch::find(std::span<const EvidenceView
   std::stable_sort(good.begin(), good.end(), [](const Candidate& a, const Candidate& b) { return a.evidence > b.evidence; });
   std::vector<Candidate> found;
   for (const Candidate& one : good) {
-    if (found.size() == kMaxCount) break;
+    if (found.size() == kMaxCandidates) break;
     const auto is_near = [&](const Candidate& other) { return (other.location - one.location).norm() < kApart; };
     if (std::none_of(found.begin(), found.end(), is_near)) found.push_back(one);
   }

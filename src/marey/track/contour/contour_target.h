@@ -53,15 +53,15 @@ struct ContourTarget {
   ShapeFilter shape;
   MotionFilter motion;
   double height;                                          ///< px
-  double default_area;                                    ///< px²
-  double tracked_height;                                  ///< px; of the tracker's box while `default_area` was seen
+  double typical_area;                                    ///< px²
+  double tracked_height;                                  ///< px; of the tracker's box while `typical_area` was seen
   geometry::ClosedSpline predicted;                       ///< of this frame, before anything was seen of it
   std::optional<geometry::ClosedSpline> body_shape = {};  ///< the last that filled the tracker's box; in heights, from its foot
   colour::BodyModel body = {};                            ///
   int learned = 0;                                        ///< frames that `body` was learned from
   int held = 0;                                           ///< frames since it was seen, or a part of it
   Vector<2> centre_in_box = {0, 0};                       ///< heights, from the middle of the tracker's box to the outline's centre
-  double default_fraction = 1;                            ///< of the pixels within the outline that are foreground
+  double typical_fraction = 1;                            ///< of the pixels within the outline that are foreground
   double fraction = 1;
   Box box = {};
   Outline::State state = Outline::State::detected;

@@ -278,7 +278,7 @@ class ContourTracker::Implementation {
                         .shape = ShapeFilter(std::move(spline), kSilhouetteNoise),
                         .motion = motion,
                         .height = height,
-                        .default_area = area,
+                        .typical_area = area,
                         .tracked_height = height,
                         .predicted = std::move(predicted)});
     ContourTarget& target = targets_.back();

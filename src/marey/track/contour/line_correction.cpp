@@ -157,9 +157,9 @@ void LineCorrection::note_hidden(ContourTarget& target) {
 }
 
 void LineCorrection::correct_shape(ContourTarget& target, int found, int askable, double dt) {
-  const bool hidden = target.fraction < kHiddenFraction * target.default_fraction;
+  const bool hidden = target.fraction < kHiddenFraction * target.typical_fraction;
   const double part = askable > 0 ? static_cast<double>(found) / askable : 0;
-  if (part < kPartly || target.fraction < 0.4 * target.default_fraction) {
+  if (part < kPartly || target.fraction < 0.4 * target.typical_fraction) {
     target.state = Outline::State::held;
     return;
   }
@@ -180,7 +180,7 @@ void LineCorrection::correct_shape(ContourTarget& target, int found, int askable
   if (clear && dt > 0 && area > 0 && predicted_area > 0) {
     const double measured = target.motion.growth() + (std::sqrt(area / predicted_area) - 1) / dt;
     target.motion.correct_growth(measured, kGrowthNoise);
-    target.default_fraction += kFractionMemory * (target.fraction - target.default_fraction);
+    target.typical_fraction += kFractionMemory * (target.fraction - target.typical_fraction);
     target.height += kFractionMemory * (target.shape.spline().box().height - target.height);
   }
 }

@@ -22,7 +22,7 @@ namespace {
 constexpr double kMaxUnlike = 1.35;       // factor of a silhouette's size over the typical, from which on it is not trusted
 constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kHalo = 5;               // px: physical, sharpening's halo at both ends of a silhouette
-constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
+constexpr double kMargin = 0.2;           // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
 constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
@@ -76,12 +76,12 @@ LoneSilhouettes::Inspected LoneSilhouettes::inspected(const Detection& detected,
   Box about = bounds(detected.outline);
   if (known) about = geometry::hull(about, target->predicted.box());
   colour::ColourPatch patch =
-      colour::cut_patch(image_, mask_, colour::grown(about, 2 + kNextTo * height), colour::cell_step(height), scene_);
+      colour::cut_patch(image_, mask_, colour::grown(about, 2 + kMargin * height), colour::cell_step(height), scene_);
   if (patch.colour.empty()) return {fit_silhouette(detected, image_.luma(), options)};
   cv::Mat fraction = known ? known_fraction(patch, *target, detected, mask)
                            : colour::body_fraction(patch, colour::cells_within(detected.outline, patch), height);
   const std::vector<Vector<2>> edge = colour::half_level_curve(fraction, patch);
-  const double typical = known ? target->default_area : geometry::polygon_area(detected.outline);
+  const double typical = known ? target->typical_area : geometry::polygon_area(detected.outline);
   if (geometry::polygon_area(edge) < kMinOfSilhouette * typical) return {fit_silhouette(detected, image_.luma(), options)};
   auto spline = fit_curve(edge, options);
   const Box same = known ? target->predicted.box() : detected.box;
@@ -124,7 +124,7 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   }
   const std::optional<geometry::ClosedSpline>& spline = found.spline;
   if (!spline || spline->count() < count) return false;
-  const double growth = std::sqrt(spline->area() / target.default_area);
+  const double growth = std::sqrt(spline->area() / target.typical_area);
   const bool known = target.state == Outline::State::detected || target.learned > 0;
   if (known && target.held < kHeldTooLong && (growth < 1 / kMaxUnlike || growth > kMaxUnlike)) return false;
   if (known && !is_of_size(spline->box(), target)) return false;
@@ -136,7 +136,7 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   target.state = Outline::State::detected;
   target.knotted = false;
   target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
-  target.default_area += kFractionMemory * (spline->area() - target.default_area);
+  target.typical_area += kFractionMemory * (spline->area() - target.typical_area);
   if (track.box) target.tracked_height += kFractionMemory * (track.box->height - target.tracked_height);
   learn(target, found, centre, track);
   return true;

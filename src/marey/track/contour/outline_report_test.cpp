@@ -24,7 +24,7 @@ ContourTarget target_of(const geometry::ClosedSpline& spline) {
                        .shape = ShapeFilter(spline, 0.5),
                        .motion = MotionFilter(spline.centroid(), Vector<2>::Zero(), 0, 1, 1, 1),
                        .height = kBox.height,
-                       .default_area = spline.area(),
+                       .typical_area = spline.area(),
                        .tracked_height = kBox.height,
                        .predicted = spline};
   target.state = Outline::State::detected;

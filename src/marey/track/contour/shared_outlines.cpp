@@ -30,14 +30,14 @@ constexpr double kLearnInRegion = 0.15;                   // what a frame counts
 constexpr double kFine = 80;                              // px of height, up to which cells are pixels
 constexpr int kFewFrames = 6;                             // alone, up to which the silhouettes may have held pixels of others
 
-bool rarely_known(const ContourTarget& target) {
+bool barely_known(const ContourTarget& target) {
   return target.learned < kFewFrames;
 }
 
 /// Its typical area, as large as the tracker has it now.
 double expected_area(const ContourTarget& target, const Box& box) {
   const double growth = target.tracked_height > 0 ? box.height / target.tracked_height : 1;
-  return target.default_area * growth * growth;
+  return target.typical_area * growth * growth;
 }
 
 colour::ColourPatch patch_about(const Image& image, const cv::Mat& mask, const colour::SceneImage* scene,
@@ -71,7 +71,7 @@ colour::RegionMember member_of(const SharedTarget& shared) {
   } else {
     member.shifts = {none, tracked};
   }
-  member.typical = old || rarely_known(target) ? kTypicalWeightHeld : kTypicalWeight;
+  member.typical = old || barely_known(target) ? kTypicalWeightHeld : kTypicalWeight;
   return member;
 }
 
@@ -125,7 +125,7 @@ void take_part(ContourTarget& target, const Box& box, const colour::RegionMember
   const auto curve = colour::half_level_curve(member.whole, patch);
   const auto spline = fit_curve(curve, {.order = target.predicted.order(), .minimum = count, .maximum = count});
   const double part = spline ? spline->area() / expected_area(target, box) : 0;
-  const double doubt_of_area = rarely_known(target) ? 0.6 : 1;  // its typical area is a guess then
+  const double doubt_of_area = barely_known(target) ? 0.6 : 1;  // its typical area is a guess then
   const double hidden_factor = 1 + (kHiddenCentre - 1) * std::min(1.0, 2 * (1 - member.visible));
   if (!spline || spline->count() != count || part < kMinOfTypical * doubt_of_area || part > kMaxOfTypical / doubt_of_area) {
     // No outline results from it, but a place does.
@@ -169,10 +169,10 @@ void outline_shared_region(const Image& image, const cv::Mat& mask, const colour
     ContourTarget& target = *targets[k].target;
     target.lines.clear();
     take_part(target, targets[k].box, members[k], patch, taken[k], image.size());
-    if (rarely_known(target) && target.state != Outline::State::held && members[k].visible > 0.5) {
+    if (barely_known(target) && target.state != Outline::State::held && members[k].visible > 0.5) {
       const Vector<2> centre = members[k].centre + members[k].shift;
       target.body.learn_colours(patch, members[k].detected, centre, target.height, kLearnInRegion);
-      target.default_area += kLearnInRegion * (target.shape.spline().area() - target.default_area);
+      target.typical_area += kLearnInRegion * (target.shape.spline().area() - target.typical_area);
       target.tracked_height += kLearnInRegion * (targets[k].box.height - target.tracked_height);
     }
     note_behind(target, members[k], targets);

@@ -39,7 +39,7 @@ struct Scene {
             .shape = ShapeFilter(spline, 0.5),
             .motion = MotionFilter(kStanding, Vector<2>::Zero(), 0, 1, 1, 1),
             .height = kStature,
-            .default_area = spline.area(),
+            .typical_area = spline.area(),
             .tracked_height = kStature,
             .predicted = spline};
   }
@@ -66,7 +66,7 @@ struct Scene {
 
 TEST(OutlineSharedRegion, UsesCurrentTrackerSize) {
   Scene scene;
-  scene.target.default_area *= 3;  // of when it was nearer
+  scene.target.typical_area *= 3;  // of when it was nearer
   scene.target.tracked_height *= std::sqrt(3.0);
   scene.divide();
   EXPECT_NE(scene.target.state, Outline::State::held);
@@ -75,7 +75,7 @@ TEST(OutlineSharedRegion, UsesCurrentTrackerSize) {
 
 TEST(OutlineSharedRegion, ABodyOfAnotherSizeIsNotBelieved) {
   Scene scene;
-  scene.target.default_area *= 3;
+  scene.target.typical_area *= 3;
   scene.divide();
   EXPECT_EQ(scene.target.state, Outline::State::held);
   ASSERT_TRUE(scene.target.measured.has_value()) << "but its place is";

@@ -49,7 +49,7 @@ class GroundJpda final : public GroundTrackerBase {
       any += probable[i];
       mean += probable[i] * locations_.back().value;
     }
-    if (any < kMinValue) return;
+    if (any < kMinProbability) return;
     mean /= any;
     Matrix<2> R = Matrix<2>::Zero();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -79,7 +79,7 @@ class GroundJpda final : public GroundTrackerBase {
     }
   }
 
-  static constexpr double kMinValue = 1e-6;  // less probable observations change nothing
+  static constexpr double kMinProbability = 1e-6;  // less probable observations change nothing
   static constexpr double kMinMatch = 0.2;   // of the targets it may be of, the most probable must be this much
 
   std::vector<assign::GatedPair> gains_;

@@ -10,7 +10,7 @@ namespace marey::track::ground {
 namespace {
 
 constexpr double kIndependent = 15;   // s, after which a place is new information
-constexpr double kDefaultSpread = 9;  // m per axis, of one person's places
+constexpr double kPriorSpread = 9;  // m per axis, of one person's places
 constexpr double kSpreadKnown = 4;    // instants that this is worth
 constexpr double kMeanKnown = 0.1;    // likewise of the middle: a person may be anywhere on a pitch
 constexpr double kOtherTeam = 0.1;    // of instants at which a person is taken for one of the other team
@@ -25,7 +25,7 @@ double log_evidence_of_positions(const RoleSum& role) {
   if (role.count <= 0) return 0;
   const double n = role.count, kappa = kMeanKnown + n, nu = kSpreadKnown + n;
   const Vector<2> mean = role.sum / n;
-  const Matrix<2> prior = kSpreadKnown * kDefaultSpread * kDefaultSpread * Matrix<2>::Identity();
+  const Matrix<2> prior = kSpreadKnown * kPriorSpread * kPriorSpread * Matrix<2>::Identity();
   const Matrix<2> scatter = role.squares - n * mean * mean.transpose();
   const Matrix<2> posterior = prior + scatter + (kMeanKnown * n / kappa) * mean * mean.transpose();
   return -n * std::log(std::numbers::pi) + log_gamma_2(nu / 2) - log_gamma_2(kSpreadKnown / 2) +

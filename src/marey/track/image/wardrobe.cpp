@@ -18,7 +18,7 @@ constexpr double kFirstWeight = 6;                                              
 constexpr double kWidened = 1.7;                       // variances: parts and components are not independent
 constexpr double kUnobservedKinds = 1;                 // people who wear what no person wore yet, beside those who were seen
 constexpr double kFirstAlike = 0.25, kFirstPairs = 5;  // pairs of people in equal clothes, of all, before any are seen
-constexpr int kRotationsOfAlike = 10;
+constexpr int kIterations = 10;
 constexpr double kSurestSame = 6, kSurestOther = -12;
 
 std::array<double, 3> values_of(const Appearance& colour) {
@@ -112,7 +112,7 @@ void Wardrobe::learn_alike() {
     }
   }
   alike_ = kFirstAlike / kFirstPairs;
-  for (int turn = 0; turn < kRotationsOfAlike; ++turn) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
     double sum = kFirstAlike;
     for (const double one : likelier) sum += 1 / (1 + (1 - alike_) / alike_ * std::exp(-std::clamp(one, -100.0, 100.0)));
     alike_ = std::min(0.99, sum / (kFirstPairs + static_cast<double>(likelier.size())));
@@ -151,8 +151,8 @@ double Wardrobe::log_density_of_others(int earlier, int later, const Clothes& pa
                                                    {kUnobservedKinds * alike_, same}};
   for (std::size_t k = 0; k < worn_.size(); ++k) {
     if (static_cast<int>(k) == earlier || static_cast<int>(k) == later) continue;
-    const double next_to = std::max(fraction_together(worn_[k], before), fraction_together(worn_[k], after));
-    if (next_to > 0) densities.emplace_back(next_to, log_density(worn_[k].whole, after.first, parts));
+    const double together = std::max(fraction_together(worn_[k], before), fraction_together(worn_[k], after));
+    if (together > 0) densities.emplace_back(together, log_density(worn_[k].whole, after.first, parts));
   }
   double maximum = densities.front().second, weights = 0, sum = 0;
   for (const auto& [weight, density] : densities) maximum = std::max(maximum, density);

@@ -143,11 +143,11 @@ std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std:
   return filled;
 }
 
-std::vector<TrackRow> rows_of_points(TrackletLog& log, int lowest_count, double longest) {
+std::vector<TrackRow> rows_of_points(TrackletLog& log, int min_detections, double longest) {
   std::vector<TrackRow> rows;
   for (TrackletLog::Tracklet& tracklet : log.take_tracklets()) {
     const auto detected = [](const TrackRow& row) { return row.observed(); };
-    if (std::count_if(tracklet.begin(), tracklet.end(), detected) < lowest_count) continue;
+    if (std::count_if(tracklet.begin(), tracklet.end(), detected) < min_detections) continue;
     fill_gaps(tracklet, log, longest, GapInterpolation::cubic);
     rows.insert(rows.end(), tracklet.begin(), tracklet.end());
   }

@@ -22,7 +22,7 @@ void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longe
 /// What a second pass can say of points that were followed by themselves: the tracklets without gaps of up to `longest` seconds.
 /// Tracklets seen in less than `fewest` frames are dropped. Rows in the order of frames, then ids. The recording's tracklets are
 /// used up.
-std::vector<TrackRow> rows_of_points(TrackletLog& log, int lowest_count = 3, double longest = 1);
+std::vector<TrackRow> rows_of_points(TrackletLog& log, int min_detections = 3, double longest = 1);
 
 /// Rows of a recording of which only some frames were searched, from rows that count those: `searched[row.frame]` is the frame's
 /// index among all, whose times are `times`. Rows on the straight line are put between the rows of a target in two

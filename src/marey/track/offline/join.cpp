@@ -59,7 +59,7 @@ Standing standing_of(const Tracklet& rows, const TrackletLog& log) {
 }
 
 /// The score that half of the observations reach.
-double default_score(std::span<const Tracklet> tracklets) {
+double median_score(std::span<const Tracklet> tracklets) {
   std::vector<float> scores;
   for (const Tracklet& tracklet : tracklets) {
     for (const TrackRow& row : tracklet) {
@@ -72,7 +72,7 @@ double default_score(std::span<const Tracklet> tracklets) {
 
 /// Too short, seen too rarely, or both rather short or rarely seen and unusually weak.
 bool is_false_alarm(const Standing& standing, double typical, const JoinOptions& options) {
-  if (standing.detected < options.lowest_count || standing.lasted < options.shortest || standing.fraction < options.rarest)
+  if (standing.detected < options.min_detections || standing.lasted < options.shortest || standing.fraction < options.rarest)
     return true;
   const bool weak = standing.score < typical - options.weaker;
   return weak && (standing.lasted < weak_lasting || standing.fraction < weak_fraction);
@@ -121,7 +121,7 @@ std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options, JoinRep
   tracklets = linker.join(std::move(tracklets), std::min(kShortNotice, options.longest_gap));
   if (linker.knows_clothes()) tracklets = linker.decide_again(std::move(tracklets));
   tracklets = linker.join(std::move(tracklets), options.longest_gap);
-  const double typical = default_score(tracklets);
+  const double typical = median_score(tracklets);
   std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, log), typical, options); });
   for (Tracklet& tracklet : tracklets) {
     fill_gaps(tracklet, log, options.longest_filled, GapInterpolation::straight);

@@ -33,13 +33,13 @@ struct OutlineHead {
 
 constexpr std::size_t kMotion = 12, kPoint = 4, kLine = 8;  // numbers each
 
-[[noreturn]] void throw_no_room(const std::string& next_to) {
-  throw Error("{}: no room beside it to keep outlines until they are written ({})", next_to,
+[[noreturn]] void throw_no_room(const std::string& spill_path) {
+  throw Error("{}: no room beside it to keep outlines until they are written ({})", spill_path,
               std::generic_category().message(errno));
 }
 
-[[noreturn]] void throw_unreadable(const std::string& next_to) {
-  throw Error("{}: the outlines kept beside it cannot be read again ({})", next_to, std::generic_category().message(errno));
+[[noreturn]] void throw_unreadable(const std::string& spill_path) {
+  throw Error("{}: the outlines kept beside it cannot be read again ({})", spill_path, std::generic_category().message(errno));
 }
 
 std::FILE* make_unnamed_file(const fs::path& folder) {
@@ -116,15 +116,15 @@ std::shared_ptr<const Outline> outline_from(const OutlineHead& head, const float
 
 }  // namespace
 
-OutlineLog::OutlineLog(const std::string& next_to, bool with_lines) : next_to_(next_to), with_lines_(with_lines) {
+OutlineLog::OutlineLog(const std::string& spill_path, bool with_lines) : spill_path_(spill_path), with_lines_(with_lines) {
   std::error_code ignored;
-  const fs::path folder = fs::path(next_to).parent_path();
-  if (!fs::exists(next_to, ignored) || fs::is_regular_file(next_to, ignored)) {
+  const fs::path folder = fs::path(spill_path).parent_path();
+  if (!fs::exists(spill_path, ignored) || fs::is_regular_file(spill_path, ignored)) {
     file_.reset(make_unnamed_file(folder.empty() ? "." : folder));
   }
   if (file_ == nullptr) file_.reset(make_unnamed_file(fs::temp_directory_path(ignored)));
   if (file_ == nullptr) {
-    throw Error("{}: there is no place beside it to keep outlines until they are written ({})", next_to,
+    throw Error("{}: there is no place beside it to keep outlines until they are written ({})", spill_path,
                 std::generic_category().message(errno));
   }
 }
@@ -132,11 +132,11 @@ OutlineLog::OutlineLog(const std::string& next_to, bool with_lines) : next_to_(n
 OutlineLog::~OutlineLog() = default;
 
 void OutlineLog::append(const void* data, std::size_t size) {
-  if (std::fwrite(data, 1, size, file_.get()) != size) throw_no_room(next_to_);
+  if (std::fwrite(data, 1, size, file_.get()) != size) throw_no_room(spill_path_);
 }
 
 void OutlineLog::take(void* data, std::size_t size) {
-  if (std::fread(data, 1, size, file_.get()) != size) throw_unreadable(next_to_);
+  if (std::fread(data, 1, size, file_.get()) != size) throw_unreadable(spill_path_);
 }
 
 void OutlineLog::add(std::int64_t frame, std::span<const Track<2>> tracks) {
@@ -165,8 +165,8 @@ void OutlineLog::add(std::int64_t frame, std::span<const Track<2>> tracks) {
 const OutlineLog::Frame& OutlineLog::at(std::int64_t frame) {
   static const Frame none;
   if (!reading_ || (last_requested_ && frame < *last_requested_)) {
-    if (std::fflush(file_.get()) != 0) throw_no_room(next_to_);
-    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) throw_unreadable(next_to_);
+    if (std::fflush(file_.get()) != 0) throw_no_room(spill_path_);
+    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) throw_unreadable(spill_path_);
     reading_ = true;
     read_.reset();
   }

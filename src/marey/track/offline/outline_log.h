@@ -24,7 +24,7 @@ class OutlineLog {
 
   /// Keeps its file in the folder of `beside`, or where that takes none (a device) in the one for temporary files. Measurement
   /// lines, which double its size, are kept on demand. Throws Error if no file can be made.
-  OutlineLog(const std::string& next_to, bool with_lines);
+  OutlineLog(const std::string& spill_path, bool with_lines);
   ~OutlineLog();
   OutlineLog(const OutlineLog&) = delete;
   OutlineLog& operator=(const OutlineLog&) = delete;
@@ -44,7 +44,7 @@ class OutlineLog {
   void take(void* data, std::size_t size);
   void read_frame();
 
-  std::string next_to_;
+  std::string spill_path_;
   bool with_lines_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::vector<float> numbers_;  // of one outline

@@ -90,7 +90,7 @@ int cut_in_two_although_alone(int cases, unsigned first_seed) {
     std::mt19937 random(first_seed + static_cast<unsigned>(i));
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     const double speed = uniform(1, 6), darker = uniform(10, 45);
-    const int shade = static_cast<int>(uniform(25, 45)), next_to = shade + static_cast<int>(uniform(-3, 3));
+    const int shade = static_cast<int>(uniform(25, 45)), meets_at = shade + static_cast<int>(uniform(-3, 3));
     std::vector<Appearance> clothe;
     for (int k = 0; k < 7; ++k) {
       clothe.push_back({.lightness = static_cast<float>(uniform(55, 90)),
@@ -116,13 +116,13 @@ int cut_in_two_although_alone(int cases, unsigned first_seed) {
       Appearance colour = clothe[0];
       if (k >= shade) colour.lightness -= static_cast<float>(darker), colour.b -= 8;
       show(1, 100 + speed * k, 200, colour);
-      if (i % 2 == 0 && k >= next_to && k < next_to + 6) {
+      if (i % 2 == 0 && k >= meets_at && k < meets_at + 6) {
         tracks.back().provenance = Provenance::predicted;
         tracks.back().observation.reset();
         clothes.pop_back();
       }
       for (int other = 1; other < 6; ++other) show(1 + other, 100 + 150.0 * other, 600, clothe[static_cast<std::size_t>(other)]);
-      if (i % 2 == 1) show(7, 100 + speed * next_to + 5.0 * (next_to - k), 206, clothe[6]);
+      if (i % 2 == 1) show(7, 100 + speed * meets_at + 5.0 * (meets_at - k), 206, clothe[6]);
       log.add(k, timestamp_from_seconds(k / kFrameRate), tracks, clothes);
     }
     std::set<int> numbers;

@@ -22,12 +22,12 @@ constexpr double kLongEnoughToName = 0.5;  // s, from which its neighbours ident
 constexpr double kOpening = 0.01;          // m, of spread that a distance may yet show after a second, fading with time
 constexpr double kMinSpread = 0.001;       // m
 constexpr double kStationary = 0.05;       // m; markers whose distance varies by more say nothing of each other
-constexpr std::size_t kMinCount = 3;       // neighbours
+constexpr std::size_t kMinNeighbours = 3;       // neighbours
 constexpr std::size_t kMinToName = 4;      // that identify a marker
 constexpr double kMaxAgree = 0.7;          // of the neighbours must agree: the others may be mistaken themselves
 constexpr std::size_t kRanked = 14;        // neighbours that are asked whether a place is a marker's; those that are seen count
 constexpr std::size_t kRequested = 9;
-constexpr int kRarelyEver = 12;        // samples of both seen, of numbers that may be one marker's
+constexpr int kMinTogetherEver = 12;        // samples of both seen, of numbers that may be one marker's
 constexpr double kWellKnown = 1.5;     // s of one of them with a third, from which it is known whether both are on one bone
 constexpr double kRigid = 0.02;        // m, of spread that such a distance may have
 constexpr std::size_t kThirds = 4;     // on one bone with both, at least
@@ -120,7 +120,7 @@ std::optional<double> RigidNeighbours::misfit(int number, const Vector<3>& locat
 }
 
 std::optional<double> RigidNeighbours::difference(int a, int b) const {
-  if (between(a, b).count >= kRarelyEver) return std::nullopt;
+  if (between(a, b).count >= kMinTogetherEver) return std::nullopt;
   std::array<std::pair<double, double>, kRequested> thirds;  // spread and misfit, the steadiest first
   std::size_t requested = 0;
   for (int i = 0; i < static_cast<int>(members_.size()); ++i) {
@@ -223,7 +223,7 @@ std::optional<RigidNeighbours::Location> RigidNeighbours::position_of(int number
     total += weight;
     spread += weight * variance;
   }
-  if (neighbours < kMinCount) return std::nullopt;
+  if (neighbours < kMinNeighbours) return std::nullopt;
   from /= total;
   to /= total;
   time_step -= total * to * from.transpose();

@@ -27,7 +27,7 @@ struct RosterTarget {
   std::string label;
   filter::AnyFilter<D> filter;
   double width;             ///< of its marker
-  double default_variance;  ///< of its observations
+  double typical_variance;  ///< of its observations
   Vector<D> last_position;  ///< where it was last seen
   double unobserved = 0;    ///< s, since then
   double detected = 0;      ///< s, in which it was
@@ -118,7 +118,7 @@ class RosterLikelihood {
   /// Whether the point is as large as the target, but for what the pixels' raster makes of it, and reported as well as it usually
   /// is: a disc that something begins to cover is a bad disc before it is a small one.
   bool shows_whole(const RosterTarget<D>& target, const Observation<D>& observation) const {
-    if (D == 2 && variance_of(observation) > kPartVariance * target.default_variance) return false;
+    if (D == 2 && variance_of(observation) > kPartVariance * target.typical_variance) return false;
     return target.width - width_of(observation) < kPartWidth * target.width + kPartPixels;
   }
 

@@ -263,7 +263,7 @@ class RosterTracker final : public Tracker<D> {
                         .label = {},
                         .filter = {options_.filter, observation.value, likelihood_.noise_of(observation)},
                         .width = likelihood_.width_of(observation),
-                        .default_variance = likelihood_.variance_of(observation),
+                        .typical_variance = likelihood_.variance_of(observation),
                         .last_position = observation.value,
                         .observation = index,
                         .since = *now_,
@@ -285,7 +285,7 @@ class RosterTracker final : public Tracker<D> {
       if (target.unobserved > 1.5 * dt_) target.since = *now_;
       if (!target.crowded) {
         target.width += kWidthMemory * (likelihood_.width_of(point) - target.width);
-        target.default_variance += kVarianceMemory * (likelihood_.variance_of(point) - target.default_variance);
+        target.typical_variance += kVarianceMemory * (likelihood_.variance_of(point) - target.typical_variance);
       }
       target.speed = std::max(target.filter.velocity().norm(), target.speed * std::exp(-dt_ / kSpeedMemory));
       target.last_position = point.value;

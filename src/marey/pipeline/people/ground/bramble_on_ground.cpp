@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/detect/blobs/foreground_evidence.h"
-#include "marey/pipeline/corridor/next_to.h"
+#include "marey/pipeline/corridor/parallel_tasks.h"
 #include "marey/pipeline/corridor/stopwatch.h"
 #include "marey/pipeline/people/ground/ball_in_view.h"
 #include "marey/pipeline/people/ground/ground_cameras.h"
@@ -62,21 +62,21 @@ class BrambleCamera {
     if (options.ball) ball_.emplace(id_, view, area, options.ball->detector);
     if (options.live) return;
     std::vector<Frame> samples = feed.sample_beginning();
-    corridor::NextTo next_to;
-    next_to.run([this, samples] { view_ambiguities_.inspect_at_beginning(samples); });
-    if (ball_) next_to.run([this, samples] { ball_->prime(samples); });
+    corridor::ParallelTasks parallel;
+    parallel.run([this, samples] { view_ambiguities_.inspect_at_beginning(samples); });
+    if (ball_) parallel.run([this, samples] { ball_->prime(samples); });
     for (Frame& frame : samples) frame.image = frame.image.part(part_);
     model_.prime(samples);
   }
 
   track::bramble::CameraEvidence observe(const Frame& frame) {
     ++frames_;
-    corridor::NextTo next_to;
-    next_to.run([this, &frame] { view_ambiguities_.add(frame); });
+    corridor::ParallelTasks parallel;
+    parallel.run([this, &frame] { view_ambiguities_.add(frame); });
     Frame searched = frame;
     searched.image = frame.image.part(part_);
     track::bramble::CameraEvidence observed{id_, frame.time, in_whole_image(model_.of(searched))};
-    next_to.wait();
+    parallel.wait();
     if (ball_) ball_->search(frame, {});
     return observed;
   }

@@ -34,9 +34,9 @@ class GroundAgain final : public PeopleOnGround {
 
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override {
     found_ = stage_->standing();
-    if (may_inspect_again() && !hooks.stop.stop_requested()) {
+    if (may_detect_again() && !hooks.stop.stop_requested()) {
       try {
-        inspect_again(hooks);
+        detect_again(hooks);
       } catch (const Stopped&) {  // the first result counts
       }
     }
@@ -63,13 +63,13 @@ class GroundAgain final : public PeopleOnGround {
 
  private:
   /// Not with a ball: in a scene that was corrected, the remainder of people's borders was followed as one.
-  bool may_inspect_again() const {
+  bool may_detect_again() const {
     return !options_.ball && std::any_of(found_.begin(), found_.end(), [](const auto& one) {
       return one != nullptr && one->since_beginning() > 0;
     }) && std::all_of(openers_.begin(), openers_.end(), [](const auto& opener) { return static_cast<bool>(opener); });
   }
 
-  void inspect_again(const Hooks& hooks) {
+  void detect_again(const Hooks& hooks) {
     std::vector<corridor::Feed> feeds;
     for (const auto& opener : openers_) feeds.push_back(opener());
     PeopleOnGroundOptions options = options_;

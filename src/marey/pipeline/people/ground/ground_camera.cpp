@@ -62,9 +62,9 @@ GroundCamera::GroundCamera(const corridor::Feed& feed, std::shared_ptr<const Gro
   if (detector_ != nullptr && !ptz_) standing_ = std::make_shared<StandingPeople>(Image());
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
-  corridor::NextTo next_to;
-  if (view_) next_to.run([this, samples] { view_->inspect_at_beginning(samples); });
-  if (ball_) next_to.run([this, samples] { ball_->prime(samples); });
+  corridor::ParallelTasks parallel;
+  if (view_) parallel.run([this, samples] { view_->inspect_at_beginning(samples); });
+  if (ball_) parallel.run([this, samples] { ball_->prime(samples); });
   for (Frame& frame : samples) {
     frame.image = observed_part(frame.image);
     if (options.without) frame.image = options.without->without_them(frame.image);
@@ -91,12 +91,12 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
   ++frames_;
   Frame frame = given.frame;
   if (!frame.image.empty()) frame.image = observed_part(frame.image);
-  corridor::NextTo next_to;
-  if (view_) next_to.run([&] { view_->add(given.frame); });
-  if (standing_) next_to.run([&] { standing_->inspect(frame); });
+  corridor::ParallelTasks parallel;
+  if (view_) parallel.run([&] { view_->add(given.frame); });
+  if (standing_) parallel.run([&] { standing_->inspect(frame); });
   detect::Detections found;
   if (detector_) {
-    found = detect(frame, expected, next_to);
+    found = detect(frame, expected, parallel);
   } else {
     found.detections = *given.detections;
   }
@@ -107,7 +107,7 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
 }
 
 /// Who is expected is where the detector need not learn the background.
-detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected, corridor::NextTo& next_to) {
+detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected, corridor::ParallelTasks& parallel) {
   expected_.clear();
   in_image_.clear();
   const cv::Size size = frame.image.size();
@@ -122,7 +122,7 @@ detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Trac
     in_image_.back().box = here;
   }
   detect::Detections found = detector_->detect(frame, expected_);
-  next_to.wait();
+  parallel.wait();
   if (standing_) standing_->observe_frame(frame, in_image_, *detector_);
   return found;
 }

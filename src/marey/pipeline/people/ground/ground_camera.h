@@ -12,7 +12,7 @@
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/corridor/feed.h"
-#include "marey/pipeline/corridor/next_to.h"
+#include "marey/pipeline/corridor/parallel_tasks.h"
 #include "marey/pipeline/corridor/run.h"
 #include "marey/pipeline/people/ground/ball_in_view.h"
 #include "marey/pipeline/people/standing_people.h"
@@ -68,7 +68,7 @@ class GroundCamera {
  private:
   cv::Point corner() const { return part_ ? part_->tl() : cv::Point(); }
   Image observed_part(const Image& image) const { return part_ ? image.part(*part_) : image; }
-  detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected, corridor::NextTo& next_to);
+  detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected, corridor::ParallelTasks& parallel);
   void learn_sizes(const std::vector<Detection>& detections, const cv::Size& size);
   void location(const Frame& frame, detect::Detections& found);
 

@@ -94,9 +94,9 @@ cv::Mat ground_next_to(const ColourPatch& patch, const cv::Mat& taken, double he
   cv::Mat somewhere;
   free.convertTo(somewhere, CV_8U, 255);
   const cv::Scalar everywhere = cv::mean(patch.colour, cv::countNonZero(somewhere) > 0 ? somewhere : cv::Mat());
-  cv::Mat next_to = weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
-  if (!patch.scene.empty()) use_scene(patch, free, next_to);
-  return next_to;
+  cv::Mat around = weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
+  if (!patch.scene.empty()) use_scene(patch, free, around);
+  return around;
 }
 
 namespace {

@@ -78,7 +78,7 @@ class Cutter {
 
   /// The bin that begins the second of two pieces of [from, to).
   std::optional<std::size_t> best_cut(std::size_t from, std::size_t to) const {
-    const auto lowest_count = static_cast<std::size_t>(std::lround(options_.shortest / bin_seconds));
+    const auto min_bins = static_cast<std::size_t>(std::lround(options_.shortest / bin_seconds));
     Vector<3> all = Vector<3>::Zero();
     for (std::size_t i = from; i < to; ++i) all += bins_[i].colour;
     Vector<3> before = Vector<3>::Zero();
@@ -88,7 +88,7 @@ class Cutter {
       const auto n = static_cast<double>(i - from);
       const auto m = static_cast<double>(to - i);
       // Within a track another person may have passed in front; before it begins and after it ends no person knows of that.
-      const std::size_t before_it = from == 0 ? 1 : lowest_count, after_it = to == bins_.size() ? 1 : lowest_count;
+      const std::size_t before_it = from == 0 ? 1 : min_bins, after_it = to == bins_.size() ? 1 : min_bins;
       if (i - from >= before_it && to - i >= after_it) {
         const double apart = (before / n - (all - before) / m).norm();
         const double gain = apart * apart * n * m / (n + m);

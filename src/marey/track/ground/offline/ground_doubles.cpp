@@ -121,7 +121,7 @@ class Doubles {
       const std::int32_t now = std::min(next_a.value_or(to + 1), next_b.value_or(to + 1));
       if (now > to) break;
       const GroundSample *x = one.take(now), *y = other.take(now);
-      count_appearance(x, y, found);
+      count_cameras(x, y, found);
       const auto p = x != nullptr ? std::optional(PositionThen{x->at(), x->spread()}) : one.between(now);
       const auto q = y != nullptr ? std::optional(PositionThen{y->at(), y->spread()}) : other.between(now);
       if (!p || !q) continue;
@@ -131,7 +131,7 @@ class Doubles {
     return found;
   }
 
-  static void count_appearance(const GroundSample* x, const GroundSample* y, Overlap& found) {
+  static void count_cameras(const GroundSample* x, const GroundSample* y, Overlap& found) {
     const CameraMask a = x != nullptr ? x->cameras : 0, b = y != nullptr ? y->cameras : 0;
     found.both += std::popcount(a & b);
     found.alone_a += std::popcount(a & ~b);

@@ -78,11 +78,11 @@ TEST(GroundDoubles, AHollowCopyWithinAnothersLifeGoes) {
 
 TEST(GroundDoubles, TwoWhomACameraSeesBothStayTwo) {
   for (const double aside : {0.5, 1.0}) {
-    const auto next_to = [&](double t) { return Vector<2>(strolls(t) + Vector<2>(0, aside)); };
+    const auto alongside = [&](double t) { return Vector<2>(strolls(t) + Vector<2>(0, aside)); };
     EXPECT_EQ(merge_doubles({tracklet(
                                  1, 0, 250, strolls, [](int) { return CameraMask(1); }, 1),
                              tracklet(
-                                 2, 60, 250, next_to, [](int k) { return CameraMask(k % 5 == 0 ? 1 : 0); }, 2)},
+                                 2, 60, 250, alongside, [](int k) { return CameraMask(k % 5 == 0 ? 1 : 0); }, 2)},
                             instants(250))
                   .size(),
               2U);

@@ -29,7 +29,7 @@ constexpr double thinned = 0.6;     // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be another person's
 constexpr std::size_t kMaxKinds = 300;
 
-constexpr int kRotations = 5;    // of learning who left, and where people leave
+constexpr int kIterations = 5;    // of learning who left, and where people leave
 constexpr double kMinOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are omitted
 constexpr double kBounds = 1.5;  // s
 
@@ -111,7 +111,7 @@ class Chainer {
       if (seconds(times_.back() - tails_[i].time) > bounds) ended.push_back(i);
     }
     std::vector<double> came(n, 0.5), left(n, 0.5);
-    for (int turn = 0; turn < kRotations; ++turn) {
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
       std::vector<EntryExitMap::EntryExit> comings, leavings;
       for (const std::size_t i : begun) comings.push_back({heads_[i].state.location(), head_at_border_[i] != 0, came[i]});
       for (const std::size_t i : ended) leavings.push_back({tails_[i].state.location(), tail_at_border_[i] != 0, left[i]});

@@ -11,7 +11,7 @@ namespace marey::track::ground::offline {
 namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
-constexpr int default_passes = 3;
+constexpr int kPasses = 3;
 constexpr double round_time_step = 0.5;  // s before and after within which the strength of pushes is measured
 constexpr double strongest = 3;          // in units of the pushes' typical power
 constexpr double shared_memory = 0.5;    // s for which errors persist of who is seen in one region with others
@@ -166,7 +166,7 @@ SmoothingPass smoothed(std::span<const GroundSample> samples, std::span<const Ti
 /// The filter alone, over all samples, from the first or from the last on. Of what comes beyond nothing is known: all push alike.
 GroundState filtered(std::span<const GroundSample> samples, std::span<const Timestamp> times, GroundMotion motion, bool forwards) {
   motion.calm = 1;
-  const SmoothingPass detected = smoothed(samples, times, motion, default_passes, false);
+  const SmoothingPass detected = smoothed(samples, times, motion, kPasses, false);
   const std::size_t n = detected.samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
   PathSmoother path(detected.motion, unknown(detected.samples[at(0)].at(), detected.spread(at(0)), detected.motion));

@@ -9,19 +9,19 @@ namespace marey::pipeline::corridor {
 
 /// Tasks that run while their owner continues: on another thread where one is free, else in `wait`. What they touch is theirs until
 /// then. With one thread they run in `wait`, one after the other, and the result is the same.
-class NextTo {
+class ParallelTasks {
  public:
-  NextTo() = default;
+  ParallelTasks() = default;
   /// Waits, and drops what a task threw: its owner has failed before, and says why.
-  ~NextTo() {
+  ~ParallelTasks() {
     try {
       tasks_.wait();
     } catch (...) {
       return;
     }
   }
-  NextTo(const NextTo&) = delete;
-  NextTo& operator=(const NextTo&) = delete;
+  ParallelTasks(const ParallelTasks&) = delete;
+  ParallelTasks& operator=(const ParallelTasks&) = delete;
 
   template <typename Task>
   void run(Task&& task) {
