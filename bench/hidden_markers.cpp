@@ -152,7 +152,7 @@ void compare(const Skeleton& skeleton, const std::vector<ObservedMarkers>& frame
     std::size_t off_at = 0;
     const std::size_t until = std::min(all.rows.size(), window.end + 3 * after);
     for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
-      if (!skeleton.coordinates[c].rotations || !skeleton.coordinates[c].free()) continue;
+      if (!skeleton.coordinates[c].is_rotation || !skeleton.coordinates[c].free()) continue;
       for (std::size_t f = window.begin; f < until; ++f) {
         found.unobserved += all.observed[f][c] && !hidden.observed[f][c] ? 1 : 0;
         found.angles += all.observed[f][c] ? 1 : 0;

@@ -47,7 +47,7 @@ void print_moments(const JointMoments& moments) {
                100 * *moments.unexplained_fraction);
   fmt::print("{:<28} {:>14} {:>12}\n", "", "largest", "power");
   for (const JointMoments::Coordinate& one : moments.coordinates)
-    fmt::print("{:<28} {:>10.2f} {:<3} {:>10.2f} W\n", one.name, largest(one.forces), one.rotations ? "N m" : "N",
+    fmt::print("{:<28} {:>10.2f} {:<3} {:>10.2f} W\n", one.name, largest(one.forces), one.is_rotation ? "N m" : "N",
                largest(one.powers));
 }
 
@@ -55,7 +55,7 @@ Json moments_json(const JointMoments& moments) {
   Json coordinates = Json::array();
   for (const JointMoments::Coordinate& one : moments.coordinates)
     coordinates.push_back({{"name", one.name},
-                           {"unit", one.rotations ? "N m" : "N"},
+                           {"unit", one.is_rotation ? "N m" : "N"},
                            {"largest", largest(one.forces)},
                            {"largest_power_w", largest(one.powers)}});
   Json json = {{"frames", moments.times.size()},

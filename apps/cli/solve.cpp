@@ -117,9 +117,9 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
   for (const SolveSummary::Marker& m : summary.markers)
     markers.push_back({{"label", m.label}, {"seen", m.detected}, {"rms_mm", 1000 * m.rms_m}, {"worst_mm", 1000 * m.worst_m}});
   for (const SolveSummary::Coordinate& c : summary.coordinates) {
-    const double unit = c.rotations ? 180 / std::numbers::pi : 1;
+    const double unit = c.is_rotation ? 180 / std::numbers::pi : 1;
     coordinates.push_back({{"name", c.name},
-                           {"unit", c.rotations ? "deg" : "m"},
+                           {"unit", c.is_rotation ? "deg" : "m"},
                            {"lowest", c.lowest * unit},
                            {"highest", c.highest * unit},
                            {"deviation", c.deviation * unit},

@@ -18,7 +18,7 @@ double unwound(double angle, double near) {
 
 Rigid3 moved_along(const JointAxis& axis, double amount) {
   Rigid3 move;
-  if (axis.rotations) {
+  if (axis.is_rotation) {
     move.rotation = Eigen::AngleAxisd(amount, axis.axis).toRotationMatrix();
   } else {
     move.translation = amount * axis.axis;
@@ -165,9 +165,9 @@ std::string_view kind_of(const Skeleton& skeleton, const Joint& joint) {
     if (!axis.coordinate) continue;
     const auto line = axis.amount.line();
     const Coordinate& coordinate = skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)];
-    if (!line || coordinate.coupling || coordinate.rotations != axis.rotations) return "custom";
+    if (!line || coordinate.coupling || coordinate.is_rotation != axis.is_rotation) return "custom";
     if (line->first == 0 || coordinate.locked) continue;
-    ++(axis.rotations ? rotations : shifts);
+    ++(axis.is_rotation ? rotations : shifts);
   }
   if (shifts == 3 && rotations == 3) return "free";
   if (shifts > 0) return "custom";

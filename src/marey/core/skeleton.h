@@ -58,7 +58,7 @@ struct Coordinate {
   };
 
   std::string name;
-  bool rotations = true;                  ///< an angle; otherwise a shift
+  bool is_rotation = true;                  ///< an angle; otherwise a shift
   double rest = 0;                        ///< where it is when the skeleton rests
   std::optional<double> lowest, highest;  ///< what the joint allows
   bool locked = false;                    ///< it stays at `rest`
@@ -69,7 +69,7 @@ struct Coordinate {
 
 /// One turn or shift of a joint.
 struct JointAxis {
-  bool rotations = true;
+  bool is_rotation = true;
   Vector<3> axis = Vector<3>::UnitZ();  ///< of length 1
   CoordinateFunction amount;
   std::optional<int> coordinate;  ///< nothing: the amount at 0, always

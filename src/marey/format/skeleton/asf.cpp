@@ -275,7 +275,7 @@ SkeletonMotion parse_amc(std::string_view text, const std::string& name, const S
       if (!value || std::abs(*value) > 1e7)
         throw Error("{}:{}: {} is no number that could stand here", name, lines.number(), shown(words[i + 1]));
       const auto at = static_cast<std::size_t>(bone->second[i]);
-      motion.rows.back()[at] = *value * (asf.coordinates[at].rotations ? radians : skeleton.unit_m);
+      motion.rows.back()[at] = *value * (asf.coordinates[at].is_rotation ? radians : skeleton.unit_m);
     }
   }
   if (motion.rows.empty()) throw Error("{}: has no frames", name);

@@ -94,7 +94,7 @@ SkeletonMotion motion_of(const MotionTable& table, const Skeleton& skeleton, boo
       const auto coordinate = skeleton.coordinate(table.columns[c]);
       if (!coordinate || !table.rows[r][c]) continue;
       const auto i = static_cast<std::size_t>(*coordinate);
-      row[i] = *table.rows[r][c] * (degrees && skeleton.coordinates[i].rotations ? std::numbers::pi / 180 : 1);
+      row[i] = *table.rows[r][c] * (degrees && skeleton.coordinates[i].is_rotation ? std::numbers::pi / 180 : 1);
     }
     motion.rows.push_back(std::move(row));
     motion.times.push_back(timestamp_from_seconds(table.times[r]));
@@ -111,7 +111,7 @@ void write_motion_table(const std::string& path, const Skeleton& skeleton, const
     table.times.push_back(seconds(motion.times[r]));
     std::vector<std::optional<double>> row;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-      row.emplace_back(motion.rows[r][c] * (skeleton.coordinates[c].rotations ? 180 / std::numbers::pi : 1));
+      row.emplace_back(motion.rows[r][c] * (skeleton.coordinates[c].is_rotation ? 180 / std::numbers::pi : 1));
     table.rows.push_back(std::move(row));
   }
   write_motion_table(path, table);

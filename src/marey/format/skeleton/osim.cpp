@@ -238,12 +238,12 @@ class OsimModel {
                        known->second.size()));
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
       const char letter = known->second[i];
-      const bool rotations = letter >= 'x';
-      const JointAxis axis{rotations, Vector<3>::Unit(letter - (rotations ? 'x' : 'X')), {}, coordinates[i]};
-      file_.skeleton.coordinates[static_cast<std::size_t>(coordinates[i])].rotations = rotations;
+      const bool is_rotation = letter >= 'x';
+      const JointAxis axis{is_rotation, Vector<3>::Unit(letter - (is_rotation ? 'x' : 'X')), {}, coordinates[i]};
+      file_.skeleton.coordinates[static_cast<std::size_t>(coordinates[i])].is_rotation = is_rotation;
       // Shifts come before turns: they are along the parent's axes.
       const auto before =
-          std::find_if(into.axes.begin(), into.axes.end(), [&](const JointAxis& other) { return !rotations && other.rotations; });
+          std::find_if(into.axes.begin(), into.axes.end(), [&](const JointAxis& other) { return !is_rotation && other.is_rotation; });
       into.axes.insert(before, axis);
     }
   }
@@ -275,10 +275,10 @@ class OsimModel {
     std::vector<JointAxis> rotations, shifts;
     pugi::xml_node transform = joint.child("SpatialTransform");
     if (transform.child("objects")) transform = transform.child("objects");
-    for (int i : coordinates) file_.skeleton.coordinates[static_cast<std::size_t>(i)].rotations = false;
+    for (int i : coordinates) file_.skeleton.coordinates[static_cast<std::size_t>(i)].is_rotation = false;
     for (const pugi::xml_node node : transform.children("TransformAxis")) {
       JointAxis axis;
-      axis.rotations = std::string_view(node.attribute("name").value()).starts_with("rotation");
+      axis.is_rotation = std::string_view(node.attribute("name").value()).starts_with("rotation");
       axis.axis = vector_in(node.child("axis"));
       if (!(axis.axis.norm() > 1e-9))
         fail(fmt::format("an axis of joint {} has no direction", shown(joint.attribute("name").value())));
@@ -291,10 +291,10 @@ class OsimModel {
         if (!axis.coordinate)
           fail(fmt::format("joint {} names the coordinate {}, which is not there", shown(joint.attribute("name").value()),
                            shown(named.front())));
-        if (axis.rotations) file_.skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].rotations = true;
+        if (axis.is_rotation) file_.skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].is_rotation = true;
       }
       axis.amount = function_of(node, axis.coordinate.has_value());
-      (axis.rotations ? rotations : shifts).push_back(std::move(axis));
+      (axis.is_rotation ? rotations : shifts).push_back(std::move(axis));
     }
     if (rotations.size() > 3 || shifts.size() > 3)
       fail(fmt::format("joint {} has more than six axes", shown(joint.attribute("name").value())));

@@ -110,7 +110,7 @@ class SkeletonToml {
       coordinate.name = names.empty() ? fmt::format("{}_{}", segment.name, i + 1) : plain_text(names[at]);
       if (read_.skeleton.coordinate(coordinate.name))
         section.problem("coordinates", fmt::format("{} is there twice", coordinate.name));
-      coordinate.rotations = !shift;
+      coordinate.is_rotation = !shift;
       const double unit = shift ? 1 : kDegree;
       if (rest) coordinate.rest = (*rest)[at] * unit;
       if (limits && (*limits)[2 * at] < (*limits)[2 * at + 1]) {
@@ -171,7 +171,7 @@ class SkeletonToml {
     Coordinate& coordinate = read_.skeleton.coordinates[static_cast<std::size_t>(*own)];
     if (coordinate.coupling || read_.skeleton.coordinates[static_cast<std::size_t>(*to)].coupling)
       return section.problem("follows", "must not follow from another itself");
-    const double unit = coordinate.rotations ? kDegree : 1;
+    const double unit = coordinate.is_rotation ? kDegree : 1;
     coordinate.coupling = Coordinate::Coupling{
         *to, CoordinateFunction::linear(section.number("slope").value_or(1), section.number("offset").value_or(0) * unit)};
   }
@@ -219,9 +219,9 @@ void append_joint_toml(std::string& text, const Skeleton& skeleton, const Segmen
   bool limited = true;
   for (const JointAxis& axis : segment.joint.axes) {
     const Coordinate& coordinate = skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)];
-    const double unit = coordinate.rotations ? kDegree : 1;
+    const double unit = coordinate.is_rotation ? kDegree : 1;
     names.push_back(quoted(coordinate.name));
-    if (axis.rotations) axes.push_back(bracketed(axis.axis));
+    if (axis.is_rotation) axes.push_back(bracketed(axis.axis));
     rest.push_back(fmt::format("{}", coordinate.rest / unit));
     limited = limited && coordinate.lowest && coordinate.highest;
     if (limited) limits.push_back(fmt::format("{}, {}", *coordinate.lowest / unit, *coordinate.highest / unit));
@@ -265,7 +265,7 @@ std::string to_toml(const Skeleton& skeleton) {
     if (!line) throw Error("{} follows another coordinate by a curve, which a skeleton.toml cannot say", coordinate.name);
     text += fmt::format("\n[[coupling]]\ncoordinate = {}\nfollows = {}\nslope = {}\noffset = {}\n", quoted(coordinate.name),
                         quoted(skeleton.coordinates[static_cast<std::size_t>(coordinate.coupling->to)].name), line->first,
-                        line->second / (coordinate.rotations ? kDegree : 1));
+                        line->second / (coordinate.is_rotation ? kDegree : 1));
   }
   for (const SkeletonMarker& marker : skeleton.markers) {
     text += fmt::format("\n[[marker]]\nname = {}\non = {}\nat = {}\n", quoted(marker.label),

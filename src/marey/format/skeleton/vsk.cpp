@@ -183,10 +183,10 @@ class VskModel {
     }
   }
 
-  void add_axis(Segment& segment, const char* name, bool rotations, const Vector<3>& axis) {
+  void add_axis(Segment& segment, const char* name, bool is_rotation, const Vector<3>& axis) {
     const int index = static_cast<int>(file_.skeleton.coordinates.size());
-    file_.skeleton.coordinates.push_back({fmt::format("{}_{}", segment.name, name), rotations, 0, {}, {}, false, {}});
-    segment.joint.axes.push_back({rotations, axis, {}, index});
+    file_.skeleton.coordinates.push_back({fmt::format("{}_{}", segment.name, name), is_rotation, 0, {}, {}, false, {}});
+    segment.joint.axes.push_back({is_rotation, axis, {}, index});
   }
 
   /// Three of an attribute's numbers, from the `first` on.

@@ -63,7 +63,7 @@ std::vector<solve::skeleton::ObservedMarkers> all_observed(const std::string& re
 std::vector<double> standing_sigmas(const Skeleton& skeleton) {
   std::vector<double> sigmas;
   for (const Coordinate& coordinate : skeleton.coordinates) {
-    const bool upright = coordinate.rotations &&
+    const bool upright = coordinate.is_rotation &&
                          std::any_of(kUprightJoints.begin(), kUprightJoints.end(),
                                      [&](std::string_view joint) { return coordinate.name.find(joint) != std::string::npos; });
     sigmas.push_back(upright ? kUpright_rad : 0);

@@ -93,7 +93,7 @@ DynamicMotion read_motion(const std::string& path, const Skeleton& skeleton, dou
   }
   std::vector<std::string> absent;
   for (const Coordinate& coordinate : skeleton.coordinates) {
-    const double scale = coordinate.rotations && table.in_degrees.value_or(true) ? std::numbers::pi / 180 : 1;
+    const double scale = coordinate.is_rotation && table.in_degrees.value_or(true) ? std::numbers::pi / 180 : 1;
     auto value = column_of(table, coordinate.name, scale);
     if (!value && !coordinate.coupling) absent.push_back(coordinate.name);
     const bool known = value.has_value();
@@ -168,7 +168,7 @@ Vector<3> interpolated(const std::vector<double>& times, const std::vector<Vecto
 void assess_residuals(const Skeleton& skeleton, JointMoments& moments) {
   std::vector<std::size_t> shifts;
   for (const JointAxis& axis : skeleton.segments.front().joint.axes) {
-    if (!axis.rotations && axis.coordinate) shifts.push_back(static_cast<std::size_t>(*axis.coordinate));
+    if (!axis.is_rotation && axis.coordinate) shifts.push_back(static_cast<std::size_t>(*axis.coordinate));
   }
   if (shifts.size() != 3) return;
   double squares = 0, missing = 0;
@@ -195,7 +195,7 @@ void write_columns(const std::string& path, const JointMoments& moments, bool po
                                       .rows = {}};
   table.rows.resize(moments.times.size());
   for (const JointMoments::Coordinate& coordinate : moments.coordinates) {
-    table.columns.push_back(coordinate.name + (powers ? "_power" : coordinate.rotations ? "_moment" : "_force"));
+    table.columns.push_back(coordinate.name + (powers ? "_power" : coordinate.is_rotation ? "_moment" : "_force"));
     for (std::size_t f = 0; f < table.rows.size(); ++f)
       table.rows[f].emplace_back(powers ? coordinate.powers[f] : coordinate.forces[f]);
   }
@@ -222,7 +222,7 @@ JointMoments joint_moments(const std::string& model, const std::string& motion_p
   std::vector<int> bodies;
   for (const auto& load : loads) bodies.push_back(body_of_model(skeleton, model, load.body));
   for (const Coordinate& coordinate : skeleton.coordinates)
-    moments.coordinates.push_back({coordinate.name, coordinate.rotations, {}, {}});
+    moments.coordinates.push_back({coordinate.name, coordinate.is_rotation, {}, {}});
   for (std::size_t f = 0; f < motion.times.size(); ++f) {
     CoordinateMotion now = motion.at(f);
     couple(skeleton, now);

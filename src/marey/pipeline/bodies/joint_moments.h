@@ -23,7 +23,7 @@ struct MomentOptions {
 struct JointMoments {
   struct Coordinate {
     std::string name;
-    bool rotations = true;
+    bool is_rotation = true;
     std::vector<double> forces;  ///< N m of an angle, N of a shift
     std::vector<double> powers;  ///< W
   };

@@ -62,7 +62,7 @@ void SolveCounts::write(const SkeletonMotion& motion, SolveSummary& summary) {
 }
 
 SolveSummary::Coordinate SolveCounts::coordinate(std::size_t c, const SkeletonMotion& motion) {
-  SolveSummary::Coordinate stated{.name = skeleton_->coordinates[c].name, .rotations = skeleton_->coordinates[c].rotations};
+  SolveSummary::Coordinate stated{.name = skeleton_->coordinates[c].name, .is_rotation = skeleton_->coordinates[c].is_rotation};
   for (std::size_t r = 0; r < motion.rows.size(); ++r) {
     stated.lowest = r == 0 ? motion.rows[r][c] : std::min(stated.lowest, motion.rows[r][c]);
     stated.highest = r == 0 ? motion.rows[r][c] : std::max(stated.highest, motion.rows[r][c]);

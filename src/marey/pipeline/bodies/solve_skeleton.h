@@ -45,7 +45,7 @@ struct SolveSummary {
   };
   struct Coordinate {
     std::string name;
-    bool rotations = true;
+    bool is_rotation = true;
     double lowest = 0, highest = 0;  ///< rad or m
     double deviation = 0;            ///< median over the instants in which a marker was seen
     double observed = 0;             ///< share of those instants

@@ -36,7 +36,7 @@ AngleErrors angle_errors(const SolvedRecording& solved, const SkeletonMotion& tr
       const auto c = solved.skeleton.coordinate(column);
       if (!c) continue;
       const Coordinate& coordinate = solved.skeleton.coordinates[static_cast<std::size_t>(*c)];
-      if (!coordinate.free() || !coordinate.rotations) continue;
+      if (!coordinate.free() || !coordinate.is_rotation) continue;
       const double off =
           std::abs(solved.motion.rows[r][static_cast<std::size_t>(*c)] - truth.rows[r][static_cast<std::size_t>(*c)]) * kDegrees;
       all.push_back(off);
@@ -149,7 +149,7 @@ TEST(SolveSkeleton, CalibratesAGenericModelToThreeMen) {
       }
       for (std::size_t c = 0; c < row.size(); ++c) {
         const auto same = solved.skeleton.coordinate(truth.skeleton.coordinates[c].name);
-        if (!same || !truth.skeleton.coordinates[c].rotations || !truth.skeleton.coordinates[c].free()) continue;
+        if (!same || !truth.skeleton.coordinates[c].is_rotation || !truth.skeleton.coordinates[c].free()) continue;
         angles += std::abs(row[c] - solved.motion.rows[r][static_cast<std::size_t>(*same)]) * kDegrees;
         ++angle_count;
       }
@@ -186,7 +186,7 @@ TEST(SolveSkeleton, BearsHiddenMarkers) {
     }
     const std::vector<double> found = solver.step(1 / 200.0, detected).coordinates;
     for (std::size_t c = 0; c < row.size(); ++c) {
-      if (!model.skeleton.coordinates[c].rotations || !model.skeleton.coordinates[c].free()) continue;
+      if (!model.skeleton.coordinates[c].is_rotation || !model.skeleton.coordinates[c].free()) continue;
       if (r > 0) worst_jump = std::max(worst_jump, std::abs(found[c] - before[c]) * kDegrees);
       if (r >= 180) worst_after = std::max(worst_after, std::abs(found[c] - row[c]) * kDegrees);
     }

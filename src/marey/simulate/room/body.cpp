@@ -112,11 +112,11 @@ Skeleton body_skeleton(std::span<const BodyMarker> markers) {
   const BodyPose rest = upright_pose({});
   Skeleton skeleton;
   skeleton.name = "body";
-  const auto add_axis = [&](Segment& segment, bool rotations, int axis) {
+  const auto add_axis = [&](Segment& segment, bool is_rotation, int axis) {
     Coordinate coordinate;
-    coordinate.name = segment.name + (rotations ? "_r" : "_t") + "xyz"[axis];
-    coordinate.rotations = rotations;
-    segment.joint.axes.push_back({rotations, Vector<3>::Unit(axis), {}, static_cast<int>(skeleton.coordinates.size())});
+    coordinate.name = segment.name + (is_rotation ? "_r" : "_t") + "xyz"[axis];
+    coordinate.is_rotation = is_rotation;
+    segment.joint.axes.push_back({is_rotation, Vector<3>::Unit(axis), {}, static_cast<int>(skeleton.coordinates.size())});
     skeleton.coordinates.push_back(std::move(coordinate));
   };
   for (std::size_t limb = 0; limb < kLimbs; ++limb) {

@@ -22,7 +22,7 @@ Articulation::Articulation(const Skeleton& skeleton)
   for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
     if (!skeleton.coordinates[c].free() || of_ball[c]) continue;
     dof_of_coordinate_[c] = dofs();
-    dofs_.push_back({static_cast<int>(c), -1, 0, skeleton.coordinates[c].rotations});
+    dofs_.push_back({static_cast<int>(c), -1, 0, skeleton.coordinates[c].is_rotation});
   }
   for (std::size_t b = 0; b < balls_.size(); ++b) {
     balls_[b].first_dof = dofs();
@@ -37,7 +37,7 @@ void Articulation::find_ball(int segment, const Joint& joint) {
   for (int i = 0; i < 3; ++i) {
     const JointAxis& axis = joint.axes[joint.axes.size() - 3 + static_cast<std::size_t>(i)];
     const auto line = axis.amount.line();
-    if (!axis.rotations || !axis.coordinate || !line || std::abs(std::abs(line->first) - 1) > 1e-12 ||
+    if (!axis.is_rotation || !axis.coordinate || !line || std::abs(std::abs(line->first) - 1) > 1e-12 ||
         std::abs(line->second) > 1e-12)
       return;
     if (!skeleton_->coordinates[static_cast<std::size_t>(*axis.coordinate)].free()) return;
@@ -132,13 +132,13 @@ void Articulation::location(const SkeletonState& state) {
         double slope = axis.amount.slope(state.coordinates[c]);
         if (coupling) slope *= coupling->function.slope(state.coordinates[from]);
         if (dof_of_coordinate_[from] >= 0 && slope != 0) {
-          const Vector<3> turn = axis.rotations ? Vector<3>(slope * along) : Vector<3>(Vector<3>::Zero());
+          const Vector<3> turn = axis.is_rotation ? Vector<3>(slope * along) : Vector<3>(Vector<3>::Zero());
           drivers_.push_back({dof_of_coordinate_[from], turn,
-                              axis.rotations ? Vector<3>(world.translation.cross(turn)) : Vector<3>(slope * along)});
+                              axis.is_rotation ? Vector<3>(world.translation.cross(turn)) : Vector<3>(slope * along)});
         }
       }
       const double by = amount(axis, state);
-      if (axis.rotations) {
+      if (axis.is_rotation) {
         world.rotation = world.rotation * Eigen::AngleAxisd(by, axis.axis).toRotationMatrix();
       } else {
         world.translation += by * along;
@@ -165,7 +165,7 @@ std::optional<SkeletonState> Articulation::with_root_at(const SkeletonState& sta
   for (int i = 0; i < 3; ++i) {
     const JointAxis& axis = joint.axes[static_cast<std::size_t>(i)];
     const auto line = axis.amount.line();
-    if (axis.rotations || !axis.coordinate || !line || line->second != 0) return std::nullopt;
+    if (axis.is_rotation || !axis.coordinate || !line || line->second != 0) return std::nullopt;
     if (!skeleton_->coordinates[static_cast<std::size_t>(*axis.coordinate)].free()) return std::nullopt;
     shifts.col(i) = axis.axis * line->first;
     coordinates[static_cast<std::size_t>(i)] = *axis.coordinate;

@@ -35,7 +35,7 @@ class Articulation {
   struct Dof {
     std::optional<int> coordinate;  ///< index; nothing if it is a turn of a ball
     int ball = -1, part = 0;        ///< index of the ball, and which of its three small turns
-    bool rotations = true;
+    bool is_rotation = true;
   };
   /// A joint that turns freely.
   struct Ball {

@@ -357,7 +357,7 @@ Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales) {
     const Vector<3>& parent = scales[static_cast<std::size_t>(*segment.parent)];
     joint.parent_from_joint.translation = parent.cwiseProduct(joint.parent_from_joint.translation);
     for (JointAxis& axis : joint.axes) {
-      if (!axis.rotations)
+      if (!axis.is_rotation)
         axis.amount = axis.amount.times(parent.cwiseProduct(joint.parent_from_joint.rotation * axis.axis).norm());
     }
   }

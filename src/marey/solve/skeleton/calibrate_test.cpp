@@ -47,7 +47,7 @@ std::vector<ObservedMarkers> motion(const Skeleton& skeleton, int count) {
   for (int f = 0; f < count; ++f) {
     std::vector<double> coordinates = skeleton.rest();
     for (std::size_t c = 0; c < coordinates.size(); ++c) {
-      if (skeleton.coordinates[c].rotations)
+      if (skeleton.coordinates[c].is_rotation)
         coordinates[c] = 0.5 * std::sin(0.15 * f + 1.7 * static_cast<double>(c)) + (skeleton.coordinates[c].lowest ? 0.6 : 0);
     }
     const auto pose = pose_of(skeleton, coordinates);
@@ -109,13 +109,13 @@ Skeleton leg(double lowest) {
   for (int i = 0; i < 6; ++i) {
     thigh.joint.axes.push_back({i >= 3, Vector<3>::Unit(i % 3), {}, i});
     skeleton.coordinates.push_back(
-        {.name = "root" + std::to_string(i), .rotations = i >= 3, .lowest = {}, .highest = {}, .coupling = {}});
+        {.name = "root" + std::to_string(i), .is_rotation = i >= 3, .lowest = {}, .highest = {}, .coupling = {}});
   }
   skeleton.segments.push_back(thigh);
   Segment shank{.name = "shank", .parent = 0, .joint = {}, .end = {}};
   shank.joint.parent_from_joint.translation = {0, 0, -0.4};
   shank.joint.axes.push_back({true, Vector<3>::UnitY(), {}, 6});
-  skeleton.coordinates.push_back({.name = "knee", .rotations = true, .lowest = lowest, .highest = 2.5, .coupling = {}});
+  skeleton.coordinates.push_back({.name = "knee", .is_rotation = true, .lowest = lowest, .highest = 2.5, .coupling = {}});
   skeleton.segments.push_back(shank);
   for (const double side : {-0.05, 0.05}) {
     skeleton.markers.push_back({"t" + std::to_string(side), 0, {0.03, side, -0.1}, 1});

@@ -79,7 +79,7 @@ void PoseSolver::cold_start(Detected detected) {
     SkeletonState from;
     Eigen::VectorXd off(articulation_.dofs());
     for (int d = 0; d < articulation_.dofs(); ++d)
-      off[d] = articulation_.dof()[static_cast<std::size_t>(d)].rotations ? 0.8 * next_random(random) : 0;
+      off[d] = articulation_.dof()[static_cast<std::size_t>(d)].is_rotation ? 0.8 * next_random(random) : 0;
     articulation_.move(first[static_cast<std::size_t>(i) % first.size()], off, from);
     attempt(from);
   }

@@ -74,16 +74,16 @@ class HumanBuilder {
     return found == standing_.end() ? nullptr : &*found;
   }
 
-  void add_axis(Joint& joint, bool rotations, const Vector<3>& axis, std::string name,
+  void add_axis(Joint& joint, bool is_rotation, const Vector<3>& axis, std::string name,
                 std::optional<std::pair<double, double>> limits = {}) {
     Coordinate coordinate;
     coordinate.name = std::move(name);
-    coordinate.rotations = rotations;
+    coordinate.is_rotation = is_rotation;
     if (limits) {
       coordinate.lowest = limits->first;
       coordinate.highest = limits->second;
     }
-    joint.axes.push_back({rotations, axis, {}, static_cast<int>(skeleton_.coordinates.size())});
+    joint.axes.push_back({is_rotation, axis, {}, static_cast<int>(skeleton_.coordinates.size())});
     skeleton_.coordinates.push_back(std::move(coordinate));
   }
 

@@ -34,7 +34,7 @@ struct MovingFrame {
 /// A joint's elementary turn or shift, in the world.
 struct ElementaryAxis {
   std::optional<int> coordinate;
-  bool rotations = true;
+  bool is_rotation = true;
   double slope = 0;  // of its amount, by the coordinate
   Vector<3> direction, point;
 };
@@ -50,8 +50,8 @@ void move_along(const JointAxis& axis, const CoordinateMotion& motion, MovingFra
     change = slope * motion.acceleration[c] + axis.amount.curvature(q) * speed * speed;
   }
   const Vector<3> direction = frame.rotation * axis.axis;
-  axes.push_back({axis.coordinate, axis.rotations, slope, direction, frame.origin});
-  if (!axis.rotations) {
+  axes.push_back({axis.coordinate, axis.is_rotation, slope, direction, frame.origin});
+  if (!axis.is_rotation) {
     frame.shift_origin(direction * amount, direction * rate, direction * change);
     return;
   }
@@ -108,7 +108,7 @@ std::vector<double> inverse_dynamics(const Skeleton& skeleton, std::span<const S
     for (const ElementaryAxis& axis : axes[s]) {
       if (!axis.coordinate) continue;
       const double along =
-          axis.rotations ? axis.direction.dot(wrench.moment - axis.point.cross(wrench.force)) : axis.direction.dot(wrench.force);
+          axis.is_rotation ? axis.direction.dot(wrench.moment - axis.point.cross(wrench.force)) : axis.direction.dot(wrench.force);
       forces[static_cast<std::size_t>(*axis.coordinate)] += axis.slope * along;
     }
     if (!skeleton.segments[s].parent) continue;

@@ -30,7 +30,7 @@ void PoseSolver::find_limbs() {
     for (const Segment& segment : skeleton.segments) {
       if (segment.parent != upper || segment.joint.axes.empty() || segment.joint.axes.size() > 2) continue;
       const JointAxis& hinge = segment.joint.axes.front();
-      if (!hinge.rotations || !hinge.coordinate) continue;
+      if (!hinge.is_rotation || !hinge.coordinate) continue;
       const Coordinate& bends = skeleton.coordinates[static_cast<std::size_t>(*hinge.coordinate)];
       if (!bends.free() || !bends.lowest || !bends.highest) continue;
       // What goes as far either way, as a shoulder's girdle, is not an elbow that could be bent backwards.
@@ -40,7 +40,7 @@ void PoseSolver::find_limbs() {
       Limb limb{
           .ball = b, .hinge = *hinge.coordinate, .joint_axes = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
       for (const JointAxis& axis : std::span(segment.joint.axes).subspan(1)) {
-        if (axis.rotations && axis.coordinate && skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].free())
+        if (axis.is_rotation && axis.coordinate && skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].free())
           limb.joint_axes.push_back(*axis.coordinate);
       }
       const auto hinge_at = &segment - skeleton.segments.data();

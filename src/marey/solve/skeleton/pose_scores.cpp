@@ -119,7 +119,7 @@ void PoseSolver::assess(Detected detected) {
     }
     const std::size_t from = coordinates[c].coupling ? static_cast<std::size_t>(coordinates[c].coupling->to) : c;
     pose_.deviations[c] = pose_.deviations[from];
-    pose_.observed[c] = pose_.deviations[c] < (coordinates[c].rotations ? options_.not_observed_rad : options_.not_observed_m);
+    pose_.observed[c] = pose_.deviations[c] < (coordinates[c].is_rotation ? options_.not_observed_rad : options_.not_observed_m);
   }
 }
 

@@ -70,7 +70,7 @@ void PoseSolver::start_from(std::vector<double> coordinates) {
 }
 
 double PoseSolver::scale_of(int dof) const {
-  return articulation_.dof()[static_cast<std::size_t>(dof)].rotations ? options_.not_observed_rad : options_.not_observed_m;
+  return articulation_.dof()[static_cast<std::size_t>(dof)].is_rotation ? options_.not_observed_rad : options_.not_observed_m;
 }
 
 /// In `covariance_` (1 + H)⁻² of a pose: what the markers that are seen leave open of it, all of them counted, for what is far from
@@ -97,7 +97,7 @@ void PoseSolver::set_prior(Detected detected, double strength) {
   for (int d = 0; d < articulation_.dofs(); ++d) {
     for (int e = 0; e < articulation_.dofs(); ++e)
       prior_information_(d, e) = strength * covariance_(d, e) / (scale_of(d) * scale_of(e));
-    prior_information_(d, d) += articulation_.dof()[static_cast<std::size_t>(d)].rotations ? kWeakPrior : kWeakPriorOfShift;
+    prior_information_(d, d) += articulation_.dof()[static_cast<std::size_t>(d)].is_rotation ? kWeakPrior : kWeakPriorOfShift;
   }
 }
 
@@ -130,7 +130,7 @@ void PoseSolver::predict(double seconds, Detected detected) {
 void PoseSolver::set_weak_prior() {
   prior_information_.setZero();
   for (int d = 0; d < articulation_.dofs(); ++d)
-    prior_information_(d, d) = articulation_.dof()[static_cast<std::size_t>(d)].rotations ? kWeakPrior : kWeakPriorOfShift;
+    prior_information_(d, d) = articulation_.dof()[static_cast<std::size_t>(d)].is_rotation ? kWeakPrior : kWeakPriorOfShift;
 }
 
 double PoseSolver::gather_markers(Detected detected) {

@@ -174,7 +174,7 @@ void track_at_rates(double speed, std::span<const double> rates) {
   const auto truth_at = [&](double time) {
     std::vector<double> truth = centre;
     for (std::size_t c = 0; c < truth.size(); ++c)
-      truth[c] += (skeleton.coordinates[c].rotations ? 0.6 : 0.1) * std::sin(speed * time + static_cast<double>(c));
+      truth[c] += (skeleton.coordinates[c].is_rotation ? 0.6 : 0.1) * std::sin(speed * time + static_cast<double>(c));
     truth[0] += 9 * time;
     skeleton.couple(truth);
     return truth;
@@ -194,7 +194,7 @@ void track_at_rates(double speed, std::span<const double> rates) {
     EXPECT_LT(std::sqrt(found), 1.1 * std::sqrt(minimum)) << rate << " Hz";
     if (at_the_end.empty()) at_the_end = solver.pose().coordinates;
     for (std::size_t c = 0; c < at_the_end.size(); ++c) {
-      if (!skeleton.coordinates[c].rotations) continue;
+      if (!skeleton.coordinates[c].is_rotation) continue;
       EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)),
                 0.02 + solver.pose().deviations[c])
           << rate << " Hz";
@@ -238,7 +238,7 @@ TEST(PoseSolver, IsNotDraggedAlongByAWrongLabel) {
   *detected[5] += Vector<3>(0.5, 0, 0.3);
   solver.step(0.01, detected);
   for (std::size_t c = 0; c < truth.size(); ++c) {
-    if (skeleton.coordinates[c].rotations) {
+    if (skeleton.coordinates[c].is_rotation) {
       EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - truth[c], 2 * std::numbers::pi)), 0.05);
     }
   }
@@ -248,8 +248,8 @@ TEST(PoseSolver, IsNotDraggedAlongByAWrongLabel) {
 Skeleton arm() {
   Skeleton skeleton;
   skeleton.name = "arm";
-  const auto coordinate = [&](bool rotations, std::optional<double> lowest, std::optional<double> highest) {
-    skeleton.coordinates.push_back({numbered("c", skeleton.coordinates.size()), rotations, 0, lowest, highest, false, {}});
+  const auto coordinate = [&](bool is_rotation, std::optional<double> lowest, std::optional<double> highest) {
+    skeleton.coordinates.push_back({numbered("c", skeleton.coordinates.size()), is_rotation, 0, lowest, highest, false, {}});
     return static_cast<int>(skeleton.coordinates.size()) - 1;
   };
   Segment trunk{.name = "trunk", .parent = {}, .joint = {}, .end = {}};

@@ -124,7 +124,7 @@ TEST(Sequence, BearsThreeInTenMarkersHidden) {
       const SolvedSequence all = solve_sequence(skeleton, frames, 120, options),
                            hidden = solve_sequence(skeleton, detected, 120, options);
       for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
-        if (!skeleton.coordinates[c].rotations) continue;
+        if (!skeleton.coordinates[c].is_rotation) continue;
         double step = 0, off = 0;
         for (const std::size_t begin : begins) {
           for (std::size_t f = begin; f < begin + 100; ++f) {

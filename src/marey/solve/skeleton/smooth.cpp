@@ -82,8 +82,8 @@ class Smoother {
         whole_(whole_frames(skeleton, frames, hidden_)),
         weight_(solver_.articulation().dofs()) {
     for (int d = 0; d < solver_.articulation().dofs(); ++d) {
-      const bool rotations = solver_.articulation().dof()[static_cast<std::size_t>(d)].rotations;
-      weight_[d] = rate_hz * rate_hz / (rotations ? options.acceleration_rad_s2 : options.acceleration_m_s2);
+      const bool is_rotation = solver_.articulation().dof()[static_cast<std::size_t>(d)].is_rotation;
+      weight_[d] = rate_hz * rate_hz / (is_rotation ? options.acceleration_rad_s2 : options.acceleration_m_s2);
     }
     for (const std::vector<double>& row : rows) states_.push_back(solver_.articulation().state_of(row));
     solver_.learn_noise_of(rows, frames);

@@ -75,7 +75,7 @@ class FoldSettler {
   double apart(const std::vector<double>& row, std::size_t f) const {
     double maximum = 0;
     for (std::size_t c = 0; c < row.size(); ++c) {
-      if (skeleton_.coordinates[c].rotations && observed_[f][c])
+      if (skeleton_.coordinates[c].is_rotation && observed_[f][c])
         maximum = std::max(maximum, std::abs(std::remainder(row[c] - rows_[f][c], 2 * std::numbers::pi)));
     }
     return maximum;
