@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""BraMBLe beside ours on the same simulated videos: people who go anywhere before one fixed camera, whose number no person told.
+"""BraMBLe beside ours on the same simulated videos: people who go anywhere before one fixed camera, whose number is not given.
 
     bench/bramble.py build/release/marey [--people 2,4,6,8,10] [--seeds 1,2,3] [--frames 250] [--work FOLDER]
 

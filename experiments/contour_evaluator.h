@@ -35,7 +35,7 @@ struct Mean {
 /// What one method made of one or more videos. IoU is of areas within the image, on the lattice of the true silhouettes.
 struct ContourTally {
   Mean whole;               ///< IoU with the whole body, of people who are half visible or more
-  Mean alone;               ///< IoU of people that no person touches
+  Mean alone;               ///< IoU of people who touch no other
   Mean front, behind;       ///< IoU of the visible part of two who overlap by 20 to 70 %: the nearer and the farther one
   Mean found;               ///< 1 where the IoU of the visible part is 0.5 or more, else 0; of all people in the last three
   Mean bias;                ///< px by which the contour of a person alone is wider than the true edge, on average along it

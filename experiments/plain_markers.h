@@ -1,4 +1,4 @@
-// What any person would write first, to compare with: pixels above half of the image's brightest are markers, their centroids are
+// The obvious method, to compare with: pixels above half of the image's brightest are markers, their centroids are
 // followed by constant-velocity Kalman filters that never stop coasting, and the Hungarian method pairs both.
 #pragma once
 

@@ -49,11 +49,11 @@ struct Ended {
 [[noreturn]] void run_words(std::vector<std::string> words, int stated, const sigset_t& signals) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    // Until it catches them itself: the other's handlers would ask no person here to end. What nohup set stays.
+    // Until it catches them itself: the other's handlers would not end this process. What nohup set stays.
     if (std::signal(number, SIG_DFL) == SIG_IGN) std::signal(number, SIG_IGN);
   }
   pthread_sigmask(SIG_SETMASK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when no person reads what it says any more
+  std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when its output is no longer read
   const int nowhere = open("/dev/null", O_RDWR);
   dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(stated, STDERR_FILENO);
   close(stated);

@@ -131,7 +131,7 @@ void CalibrationPage::done(Rig rig, Json report, const std::string& file) {
   show_rig(rig);
   reported_["report"] = std::move(report);
   reported_["rig"] = file;
-  ground_required_ = false;  // before there was a rig no person could ask
+  ground_required_ = false;  // before there was a rig it could not be requested
   notify("done");
   const std::stop_token stop = stop_by_signals();
   if (viewer_.count().pages > 0) fmt::print(stderr, "marey: the page shows how good it is; this ends when it is closed\n");

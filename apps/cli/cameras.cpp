@@ -51,7 +51,7 @@ void print_camera(const FoundCamera& camera) {
     fmt::print("  {}: {:g} to {:g}, now {:g}\n", control.name, control.minimum, control.maximum, control.now);
 }
 
-/// Its first mode is what it gives when no person asks for another.
+/// Its first mode is what it gives unless another is requested.
 Rig rig_of(const std::vector<FoundCamera>& found) {
   Rig rig;
   for (const FoundCamera& each : found) {

@@ -41,7 +41,7 @@ struct LiveReport {
 
   std::vector<Camera> cameras;     ///< CameraId i is cameras[i]
   std::int64_t superseded = 0;     ///< instants that were dropped because newer ones were whole
-  std::vector<Step> steps;         ///< none where no person measured them
+  std::vector<Step> steps;         ///< none if they were not measured
   bool unsaved = false;            ///< something was changed that the rig file does not have
   std::vector<std::string> notes;  ///< sentences to the user; the page shows them until the next report
 };

@@ -1,5 +1,5 @@
 // One thread answers the pages (net/loop.h); what `publish` brings comes from others, by way of one slot for each topic, so that a
-// server that is busy holds no person up and gathers nothing.
+// server that is busy delays no client and queues nothing.
 #include "web_server.h"
 
 #include <array>
@@ -30,7 +30,7 @@ constexpr net::ServerOptions kPages{.protocol = net::Protocol::web,
                                     .max_request = 8192,
                                     .send_buffer = 1 << 18,
                                     .silence = std::chrono::seconds(30)};
-/// Nothing is loaded from elsewhere, and no person puts the page into one of theirs.
+/// Nothing is loaded from elsewhere, and the page cannot be framed by another.
 constexpr const char* kPolicy =
     "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'";
 

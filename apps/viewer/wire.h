@@ -14,7 +14,7 @@
 //   uint8 keypoint confidence[r * k] (visibility times presence, of 255; 0: the keypoint is absent);  uint8 tracked[p].
 //
 // Kind 3 is a camera's image; sequence is its frame. The four are camera, the numbers of points n and of boxes b, and
-// width | height << 16 of the camera's images (px; 0 where unknown). Then float32 x[n], y[n], int32 track[n] (0: no person's),
+// width | height << 16 of the camera's images (px; 0 where unknown). Then float32 x[n], y[n], int32 track[n] (0: of no track),
 // float32 left[b], top[b], width[b], height[b], int32 track[b], all px of the camera; the rest is a JPEG, or nothing if there is
 // no image.
 #pragma once

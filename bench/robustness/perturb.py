@@ -23,7 +23,7 @@ class Perturbation:
 
 
 def dropped(share, seed):
-    """Frames are lost, and no person says when: those left follow one another evenly."""
+    """Frames are lost, at unknown times: those left follow one another evenly."""
     def keep(count):
         draw = random.Random(seed)
         return [i for i in range(count) if i == 0 or draw.random() >= share]

@@ -1,7 +1,7 @@
 // How well the ball is followed (track/ball) where nothing is rendered: matches of the simulator, of which each camera is given
 // spots as the detector makes them, so that dozens of seeds take seconds. Rates and noises are those that were measured of rendered
 // videos of 1280 x 720: a ball away from people is found in 97 of 100 images to 0.3 px, one before a person in 60; people show 1.7
-// false spots each, some people are not box to any person for seconds, and elsewhere there is a false spot or two, half of them of
+// false spots each, some people have no box for seconds, and elsewhere there is a false spot or two, half of them of
 // paint.
 //   ball_spots [FIRST_SEED] [SEEDS] [CAMERAS: 2 for the football stand, 0 the same without a ball] [SECONDS]
 #include <algorithm>

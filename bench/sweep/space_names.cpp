@@ -99,7 +99,7 @@ class NameEvaluate {
   std::int64_t reported_ = 0, nowhere_ = 0;
 };
 
-/// What any person would write first.
+/// The obvious method.
 class PlainTracker {
  public:
   /// Tracks by place; those that are given no point keep going as they went.

@@ -94,7 +94,7 @@ def _track_cameras(
 
 
 def _time_steps(follow: Callable[[Callable[[Instant | None], None], Callable[[], bool]], list[str]], *, waits: bool) -> Iterator[Instant]:
-    """What `follow(put, ends)` puts, on a thread of its own. waits: it is held up while no person asks; else the oldest instants give way."""
+    """What `follow(put, ends)` puts, on a thread of its own. waits: it is held up while nothing is requested; else the oldest instants give way."""
     waiting: queue.Queue[Instant | None] = queue.Queue(maxsize=_KEPT)
     left = threading.Event()
     failure: list[BaseException] = []

@@ -175,7 +175,7 @@ class Page(unittest.TestCase):
             self.assertEqual(len(status["cameras"]), 2)
             page.send("lit 63")
             self.assertIn("there is no camera 64", receive_until(page, "said", lambda text: "camera" in text))
-        self.assertEqual((self.folder / "rig.toml").read_text(), before, "no person said save")
+        self.assertEqual((self.folder / "rig.toml").read_text(), before, "save was not pressed")
 
 
 class OtherComputer(unittest.TestCase):

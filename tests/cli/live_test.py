@@ -1,4 +1,4 @@
-"""`marey track --live` on boxes of weak detectors: ahead of other trackers, honest about whom no person saw.
+"""`marey track --live` on boxes of weak detectors: ahead of other trackers, honest about who was not observed.
 
 Usage: live_test.py MAREY SOURCE_FOLDER [unittest options]. Scenes whose truth is not there (MAREY_DATA) are omitted, saying so.
 """

@@ -83,7 +83,7 @@ def convert(program, *arguments):
 
 
 def expect_same(name, found, wanted):
-    """Places by key, to 1 cm; no person more, no person less."""
+    """Places by key, to 1 cm; no more and no fewer people."""
     assert found.keys() == wanted.keys(), f"{name}: {len(found.keys() ^ wanted.keys())} places are too many or missing, of {len(wanted)}"
     error = max(max(abs(found[key][0] - wanted[key][0]), abs(found[key][1] - wanted[key][1])) for key in wanted)
     print(f"{name}: {len(wanted)} places, largest error {100 * error:.2f} cm")

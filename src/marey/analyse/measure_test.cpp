@@ -157,7 +157,7 @@ TEST(Measure, ASmoothedRunHasOneSpeed) {
   MeasureOptions other;
   other.path.method = PathOptions::Method::kalman;
   EXPECT_EQ(measure(with_velocities(true), other).people.at(0).top_mps, recorded.top_mps) << "whatever smoother is asked for";
-  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps.value(), 6, 0.05) << "of places that no person has smoothed";
+  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps.value(), 6, 0.05) << "of positions that were not smoothed";
 }
 
 TEST(Measure, ASmoothedRunWithoutVelocitiesHasThoseOfItsPlaces) {
@@ -193,7 +193,7 @@ TEST(Measure, SpeedsAreOfWhatWasMeasured) {
     EXPECT_NEAR(person.observed_s, 8.4, 0.5);
     EXPECT_NEAR(person.seconds, 10, 0.05);
     EXPECT_NEAR(person.zone_s.back(), 0, 1e-9);
-    EXPECT_TRUE(person.impossible.empty()) << "what no person measured says nothing";
+    EXPECT_TRUE(person.impossible.empty()) << "what was not measured is not evidence";
   }
 }
 

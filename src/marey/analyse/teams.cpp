@@ -221,7 +221,7 @@ class Finder {
     return at_home && presence.seconds > 0 && apart > colours_differ;
   }
 
-  /// Who is in no team's colour: a keeper, a referee, or no person knows.
+  /// Who is in no team's colour: a keeper, a referee, or unknown.
   void position_official(std::size_t candidate) {
     const int identity = candidates_.people[candidate];
     Teams::Member& member = teams_.members[static_cast<std::size_t>(identity)];

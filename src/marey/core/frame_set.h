@@ -23,7 +23,7 @@ enum class FeedState {
   connecting,  ///< nothing has come yet
   live,        ///< it gives frames
   stalled,     ///< nothing came for a while
-  lost,        ///< nothing came for so long that no person waits for it
+  lost,        ///< nothing came for so long that it is no longer waited for
   back,        ///< it gives frames again after it was stalled or lost, since a short while
   ended,       ///< nothing will come any more
 };

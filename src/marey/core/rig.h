@@ -21,7 +21,7 @@ struct RigCamera {
   std::string detections;                      ///< in place of images, what another program detected; empty if absent
   std::optional<cv::Rect> region;              ///< px: the camera's part of a larger image; pixels count from its corner
   std::optional<double> rate_hz;               ///< in place of what the source's header says
-  std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing if no person said
+  std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing if not specified
   std::optional<cv::Size> size;                ///< px
   std::optional<geometry::Lens> lens;          ///< valid for `size`
   std::optional<Rigid3> camera_from_world;     ///< m
@@ -52,7 +52,7 @@ struct Rig {
 
   /// Ground coordinates as the user has them from the world's (x, y, 1): a reflection where the user's frame is left-handed.
   std::optional<Matrix<3>> ground_from_world;
-  geometry::GroundSurface ground = {};  ///< in the world; level where no person knows better
+  geometry::GroundSurface ground = {};  ///< in the world; level if not specified
   std::optional<Calibration> calibration;
   std::vector<RigCamera> cameras;
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMinLength = 0.5;      // px; a step
 constexpr double kMaxSideLength = 900;  // units of the image
-constexpr double kMinSpan = 20;         // px shown at least, where no person moves
+constexpr double kMinSpan = 20;         // px shown at least, if nothing moves
 constexpr double kPlotMargin = 56, kPlotTop = 40, kPlotBottom = 48;
 
 /// The part of the image that is shown: what the trajectories span, and a twentieth more on each side.

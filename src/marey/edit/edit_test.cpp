@@ -123,7 +123,7 @@ TEST(Edit, FillsKeepTheirPlaces) {
     tracks.apply(operation);
   }
   EXPECT_EQ(tracks.rows(TrackId{1}).size(), 60U);
-  EXPECT_EQ(read.size(), 2U) << "no person wanted the others";
+  EXPECT_EQ(read.size(), 2U) << "the others were not required";
   for (const TrackId track : {TrackId{1}, TrackId{2}}) {
     const TrackColumns now = tracks.columns(track, 3);
     for (std::size_t row = 0; row < 60; ++row) EXPECT_EQ(now.sample(row).position, whole.find(track)->sample(row).position);

@@ -28,7 +28,7 @@ constexpr std::size_t kLongestLine = std::size_t{1} << 24;  // bytes
 InputFile::InputFile(const std::string& path, std::stop_token stop) : path_(path), stop_(std::move(stop)) {
   own_ = path != "-";
   if (!own_) path_ = "standard input";
-  // Without O_NONBLOCK, a pipe's opening would wait for its writer where no person could end the wait.
+  // Without O_NONBLOCK, a pipe's opening would wait for its writer and nothing could end the wait.
   file_ = own_ ? open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : STDIN_FILENO;
   if (file_ < 0) fail_to_read(path_);
   struct stat status{};

@@ -72,7 +72,7 @@ bool is_older_than_a_day(const fs::path& file) {
   return !error && fs::file_time_type::clock::now() - written > kOldestTemporary;
 }
 
-/// Removes what runs that were killed left of `target`. What cannot be removed stays: it is in no person's trajectory.
+/// Removes what runs that were killed left of `target`. What cannot be removed stays: it does no harm.
 void remove_stale(const fs::path& target) {
   const std::string name = target.filename().string(), host = host_name();
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");

@@ -81,7 +81,7 @@ TEST(WholeFile, ALinkAndItsFileAreOneOutput) {
 TEST(WholeFile, NextWriterRemovesLeftoverFiles) {
   const test::TemporaryFolder folder;
   write_and_die(folder / "tracks.txt");
-  ASSERT_EQ(entries(folder), 2);  // its temporary file and its lock file, which no person holds
+  ASSERT_EQ(entries(folder), 2);  // its temporary file and its lock file, which no process holds
   WholeFile other(folder / "tracks.txt.old");
   other.write("a name that begins alike");
   other.finish();

@@ -13,7 +13,7 @@ namespace marey::net {
 std::string new_token() {
   std::array<unsigned char, 24> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw Error("the system gives no random numbers, and without a token a server would be open to every person");
+    throw Error("the system gives no random numbers, and without a token a server would be open to any client");
   return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 

@@ -6,7 +6,7 @@
 
 namespace marey::net {
 
-/// 48 hexadecimal digits that no person can guess. Throws Error if the system has none.
+/// 48 hexadecimal digits that cannot be guessed. Throws Error if the system has none.
 std::string new_token();
 
 /// Compared in a time that does not depend on how much of it is right.

@@ -54,7 +54,7 @@ class FoxgloveSession : public net::Session {
     announce(foxglove_status(1, fmt::format("{} messages were dropped, because this client is too slow for them", lost)), out);
   }
 
-  /// `message_of` makes a topic's message where any person wants it.
+  /// `message_of` makes a topic's message where a client has subscribed to it.
   template <typename MessageOf>
   void frame(std::uint64_t time_ns, const MessageOf& message_of, net::Outbox& out) const {
     for (const auto& [id, topic] : topic_of_) {

@@ -61,7 +61,7 @@ class JsonProtocol : public ProtocolSink {
     server_.each([](net::Session& session, net::Outbox& out) { static_cast<JsonSession&>(session).header_changed(out); });
   }
   void send(const Instant& instant, FrameTimes times) override {
-    std::shared_ptr<const std::string> line;  // made where any person is there
+    std::shared_ptr<const std::string> line;  // made where there is a client
     server_.each([&](net::Session& session, net::Outbox& out) {
       if (line == nullptr)
         line = std::make_shared<const std::string>(json_frame(header(), channel_layout(), instant, times) + "\n");

@@ -7,7 +7,7 @@
 
 namespace marey::stream {
 
-/// A wire that sends datagrams to one address, whether any person is there or not.
+/// A wire that sends datagrams to one address, whether a client is there or not.
 class UdpProtocol : public ProtocolSink {
  public:
   /// Throws Error, which begins with the wire's name, where there is no such host.

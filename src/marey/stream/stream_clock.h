@@ -22,7 +22,7 @@ struct FrameTimes {
   std::int64_t send = 0;     ///< its bytes were made
 };
 
-/// When an instant was captured. The one who captures or plays sets it; where no person does, the least delay that was seen counts
+/// When an instant was captured. The one who captures or plays sets it; where it is not set, the least delay that was seen counts
 /// as none.
 class CaptureClock {
  public:

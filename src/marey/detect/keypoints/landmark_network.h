@@ -38,7 +38,7 @@ class LandmarkNetwork {
   /// Throws Error if the file is not there, cannot be loaded, or is another network.
   explicit LandmarkNetwork(const std::string& onnx);
 
-  /// Who is in each region of an image, CV_8UC3, blue first. `Keypoints::presence` says whether that is any person.
+  /// Who is in each region of an image, CV_8UC3, blue first. `Keypoints::presence` says whether there is a person.
   std::vector<Body> find(const cv::Mat& bgr, std::span<const PersonRegion> regions);
   /// The same in regions of several images, which share the threads. Only the pixels in a region are converted.
   std::vector<Body> find(std::span<const ImageRegion> searched);

@@ -77,7 +77,7 @@ struct Case {
   bool dark = false;
 };
 
-/// Without it the bytes are printed, those between the members too, which no person has set.
+/// Without it the bytes are printed, those between the members too, which were never set.
 void PrintTo(const Case& each, std::ostream* out) {
   *out << "radius " << each.radius << " px, noise " << each.noise << ", level " << each.level << " on " << each.background;
 }

@@ -72,7 +72,7 @@ void require_apart(const SquadMember& one, const SquadMember& other, const std::
     throw Error("{}: number {} is there twice in the team {}: {} and {}", where, one.number, shown(one.team), one.label(),
                 other.label());
   if (one.label() == other.label())
-    throw Error("{}: two are called {}, and no person could distinguish them; write one's name otherwise", where, one.label());
+    throw Error("{}: two are called {}, and could not be distinguished; write one's name otherwise", where, one.label());
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(Squads, RejectsImpossibleRowWithLine) {
   EXPECT_EQ(squads_refused("number,name,team\n7,Kane,A\n7,Son,A\n"),
             "squads.csv:3: number 7 is there twice in the team \"A\": 7 Kane and 7 Son");
   EXPECT_EQ(squads_refused("number,name,team\n7,Kane,A\n7,Kane,B\n"),
-            "squads.csv:3: two are called 7 Kane, and no person could distinguish them; write one's name otherwise");
+            "squads.csv:3: two are called 7 Kane, and could not be distinguished; write one's name otherwise");
   EXPECT_EQ(squads_refused("number,name,team\nseven,Kane,A\n"), "squads.csv:2: \"seven\" is no number of a shirt");
   EXPECT_EQ(squads_refused("number,name,team,in,out\n7,Kane,A,20,10\n"), "squads.csv:2: 7 Kane goes out before coming in");
   EXPECT_EQ(squads_refused("number,name,team,role\n7,Kane,A,coach\n"),

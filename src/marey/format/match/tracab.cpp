@@ -111,7 +111,7 @@ class TracabReader {
     read_ball(line.substr(end + 1), static_cast<std::int32_t>(*frame));
   }
 
-  /// x,y,z,speed,team,state. A ball dead on the centre spot is one that no person knows of.
+  /// x,y,z,speed,team,state. A ball dead on the centre spot is one whose position is unknown.
   void read_ball(std::string_view text, std::int32_t frame) {
     split_fields(text.substr(0, text.find_first_of(";:")), ',', fields_);
     if (fields_.size() < 6) return;

@@ -111,7 +111,7 @@ TEST(RigFile, ReadsTheExample) {
   EXPECT_EQ(lens.distortion[4], -0.014);
   EXPECT_EQ(left.camera_from_world->translation, Vector<3>(0, 0, 5));
   EXPECT_TRUE(left.camera());
-  EXPECT_FALSE(rig.cameras[1].offset_s) << "no person said";
+  EXPECT_FALSE(rig.cameras[1].offset_s) << "not specified";
   EXPECT_FALSE(rig.cameras[1].camera());
   EXPECT_TRUE(rig.cameras[1].ground_view({}));
 }

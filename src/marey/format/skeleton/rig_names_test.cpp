@@ -120,7 +120,7 @@ TEST(RigNames, AtRestTheArmsAreAsTheProgramHasThem) {
   EXPECT_LT((*t.labelled("mixamorig:LeftHand").end - Vector<3>(0.1, 0, 0)).norm(), 1e-9);
   EXPECT_LT((a.labelled("lowerarm_l").offset.normalized() - Vector<3>(1, 0, -1).normalized()).norm(), 1e-9);
   EXPECT_LT((t.labelled("mixamorig:LeftUpLeg").offset - Vector<3>(0.1, 0, 0)).norm(), 1e-9) << "it faces -y: its left is x";
-  EXPECT_LT((*t.labelled("tail").end - Vector<3>(0, 0.3, 0)).norm(), 1e-9) << "a bone of no person keeps its name, and turns along";
+  EXPECT_LT((*t.labelled("tail").end - Vector<3>(0, 0.3, 0)).norm(), 1e-9) << "an unknown bone keeps its name, and turns along";
   EXPECT_EQ(a.bodies.front().label, "root");
   EXPECT_EQ(a.labelled("pelvis").parent, a.bodies.front().id);
 }

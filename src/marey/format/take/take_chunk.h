@@ -18,7 +18,7 @@ struct ObservedColumns {
   std::vector<std::int32_t> at;  ///< of the chunk's instants; several rows may have the same
   std::vector<double> x, y;      ///< px
   OptionalColumn sigma{1}, area{1};
-  std::vector<std::uint64_t> track;  ///< 0: no person's
+  std::vector<std::uint64_t> track;  ///< 0: of no track
 
   std::size_t size() const { return at.size(); }
   /// All of one instant.

@@ -19,7 +19,7 @@ struct CalibrateWandOptions {
   std::string observations;  ///< what another program saw of the wand; empty: it is searched for in the cameras' sources
   detect::markers::MarkerOptions markers;
   marey::calibrate::MarkerLine wand;
-  marey::calibrate::wand::WandOptions how;  ///< offsets are searched for unless `synced`, or no person says the cameras' rate
+  marey::calibrate::wand::WandOptions how;  ///< offsets are searched for unless `synced`, or the cameras' rate is not given
   bool synced = false;                      ///< the cameras' clocks are right
   live::CameraSettings* camera_settings =
       nullptr;          ///< live cameras: by which they are set while the wand is waved, and the rig that is found too

@@ -13,7 +13,7 @@
 
 namespace marey::pipeline::calibrate {
 
-/// Images that a lens rests on, where no person says how many.
+/// Images that a lens rests on, if their number is not given.
 constexpr std::size_t kViewsOfLens = 60;
 
 /// A board in one frame of a camera.

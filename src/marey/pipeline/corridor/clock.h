@@ -7,7 +7,7 @@
 //
 // Where `interpolate` is set, a camera that is unsynchronised by a part of a frame saw the markers somewhere else than they are at
 // the instant: its detections are moved along the line between the frames before and after, each to the one of the other frame that
-// is its nearest and to which it is the nearest. What has no such partner is omitted: no person knows where it was.
+// is its nearest and to which it is the nearest. What has no such partner is omitted: its position is unknown.
 //
 // Live cameras (ClockOptions::live) are not waited for longer than the policy says. An instant is whole when every camera that
 // gives frames has given its own. The newest whole one is given, what is older is dropped and counted by cause; where none is

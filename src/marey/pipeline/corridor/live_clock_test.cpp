@@ -129,7 +129,7 @@ TEST_F(LiveClockTest, ACameraThatStallsCostsOnlyItselfAndComesBack) {
     EXPECT_EQ(set->cameras[1].has_value(), set->index < 50 || set->index >= 250) << set->index;
     EXPECT_EQ(set->states[0] == FeedState::live || set->index >= 398, true);
     if (set->states[1] == FeedState::stalled || set->states[1] == FeedState::lost) {
-      EXPECT_LT(now() - seconds(set->time), 0.01) << "no person waits for it";
+      EXPECT_LT(now() - seconds(set->time), 0.01) << "nothing waits for it";
     }
     if (changes.empty() || changes.back().second != set->states[1]) changes.emplace_back(seconds(set->time), set->states[1]);
   }

@@ -16,7 +16,7 @@ struct IdentifyOptions {
   std::string roster;   ///< CSV: number,name,team
   std::string names;    ///< CSV: time,id,name; may be empty if `numbers` is given
   std::string numbers;  ///< CSV of read shirt numbers: id,number,probability,readings,time; may be empty
-  double min_number = detect::shirts::kDecisiveNumber;  ///< a number that is less probable names no person
+  double min_number = detect::shirts::kDecisiveNumber;  ///< a less probable number is not used
   std::string review_items;                             ///< CSV to be written; empty: not
   double minimum = 0.02;                                ///< what is less probable to be wrong is not listed
 };
@@ -32,7 +32,7 @@ struct IdentifySummary {
   double unnamed_s = 0;        ///< that others are there for, together
   std::int64_t excluded = 0;   ///< places that were deleted: of a person who is elsewhere then, or between two people
   std::vector<ReviewItem> review_items;
-  std::vector<std::string> unused_numbers;  ///< a sentence for each number that is probable enough and names no person
+  std::vector<std::string> unused_numbers;  ///< a sentence for each number that is probable enough and is not used
   std::int64_t numbered = 0;                ///< people that were named by a number
   std::int64_t edits = 0;
 };

@@ -19,7 +19,7 @@ namespace marey::pipeline::live {
 namespace {
 
 constexpr double kBeforePlay = 0.3;  // s after a video or a simulation was opened until it begins
-constexpr int kKeep = 8;             // frames of a camera that no person asked for yet
+constexpr int kKeep = 8;             // frames of a camera that were not yet requested
 
 /// A path is played.
 std::string live_name(const std::string& source) {

@@ -26,7 +26,7 @@ struct MarkersInSpaceOptions {
   std::optional<double> noise_px;  ///< of blobs and calibration together; nothing: learned from how well rays meet
   track::roster::RosterTrackerOptions tracker = space_tracker_options();
   MarkerSet set;                  ///< labels, with places where the markers keep their distances at the beginning; may be empty
-  std::optional<double> rate_hz;  ///< of sources and observations of which no person says it
+  std::optional<double> rate_hz;  ///< of sources and observations that do not specify it
   double fill_s = 0.5;            ///< longest gap that is filled
   double predict_s = 0;           ///< of a longer gap, this much is reported as it was expected; ≤ fill_s
   /// Every instant is reported as it comes, and no gap is filled; its first `predict_s` are reported as they are expected. What a

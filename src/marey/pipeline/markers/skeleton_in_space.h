@@ -23,7 +23,7 @@ namespace marey::pipeline::markers {
 /// Which tracks of a recording are a skeleton's markers: by their labels. "Jane:LKNE" is LKNE of a subject Jane.
 class SkeletonMarkers {
  public:
-  /// The skeleton must outlive it. Markers of the labels in `exclude` belong to no person.
+  /// The skeleton must outlive it. Markers of the labels in `exclude` are not used.
   explicit SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& exclude = {});
 
   /// A label counts as the skeleton has it, or with a subject's name before it ("Jane:LASI"): then that of the first subject, and

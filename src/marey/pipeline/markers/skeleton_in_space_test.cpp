@@ -109,7 +109,7 @@ TEST(SkeletonInSpace, SaysWhatIsHiddenAndGoesOn) {
   Instant nothing;
   nothing.time = timestamp_from_seconds(-0.01);
   solved.add_to(nothing);
-  EXPECT_TRUE(nothing.bodies.empty()) << "no person knows where it is";
+  EXPECT_TRUE(nothing.bodies.empty()) << "its position is unknown";
   double worst = 0, worst_after = 0;
   for (Instant& instant : instants_of(scene, 0.0005, {"left_shank", "left_foot"}, 100, 20)) {
     solved.add_to(instant);

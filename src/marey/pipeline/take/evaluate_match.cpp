@@ -56,7 +56,7 @@ std::vector<evaluate::TargetPosition> positions_of(const Recording& recording, c
     if (!numbers[instant]) continue;
     for (const auto& [index, row] : rows.at(instant)) {
       const TrackColumns& track = recording.tracks()[index];
-      if (track.name.kind == TrackKind::ball) continue;  // no person
+      if (track.name.kind == TrackKind::ball) continue;  // not a person
       locations.push_back({*numbers[instant], marey::number(track.id()), track.position(row), velocities[index][row]});
     }
   }

@@ -120,7 +120,7 @@ TEST(JudgeMatch, MarkersInSpaceAreJudgedInAllThreeDirections) {
   EXPECT_NEAR(judgement.evaluation.position->rms, 0.004, 1e-9);
   EXPECT_TRUE(judgement.has_speed);
   EXPECT_NEAR(judgement.evaluation.velocity->rms, 0, 1e-9);
-  EXPECT_TRUE(judgement.path_lengths.empty()) << "no person asks how far a marker went";
+  EXPECT_TRUE(judgement.path_lengths.empty()) << "path lengths are of people, not of markers";
   EXPECT_EQ(evaluate_match(climbers(0, true), climbers(0.02, true), 0.01).evaluation.scores.clear.matches, 0);
   EXPECT_FALSE(evaluate_match(climbers(0, false), climbers(0, true), 0.01).has_speed);
   EXPECT_THROW(evaluate_match(climbers(0, true), runners(), 0.01), Error) << "the one on the ground, the other in space";

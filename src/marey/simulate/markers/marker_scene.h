@@ -23,7 +23,7 @@ enum class MarkerSituation {
   crossing,   ///< the paper's marker swapping: two markers meet and part
   bar,        ///< one marker, nearly straight, 12 to 32 frames behind a bar of any grey that crosses the image
   opposite,   ///< the same with two, from opposite sides, hidden at the same time in one lane
-  plain,      ///< smooth curves that do not fail any person: for timing
+  plain,      ///< smooth curves that every tracker can track: for timing
 };
 
 /// All situations with the names that the command line uses.

@@ -94,7 +94,7 @@ TEST(MatchMotion, PeopleMoveAsInAMatch) {
     EXPECT_LT(outfield, 135);
     EXPECT_GT(*std::max_element(all.fastest.begin(), all.fastest.end()), 7.5) << "no person sprints";
     EXPECT_GT(all.nearest, 0.4);
-    EXPECT_GT(all.close_pairs, 0.1) << "no person meets any person";
+    EXPECT_GT(all.close_pairs, 0.1) << "people never meet";
     EXPECT_LT(all.hard, 1e-3) << "bodies are thrown about";
   }
 }

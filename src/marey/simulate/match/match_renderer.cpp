@@ -134,7 +134,7 @@ std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& wo
     const auto pixel = view.pixel(at);
     const Vector<2> slip = random.gaussian_pair(noise);
     if (!pixel || !view.camera()->in_image(*pixel)) continue;
-    if (view.camera()->in_image(*pixel + slip)) clicks.push_back({location, *pixel + slip});  // no person clicks beside the image
+    if (view.camera()->in_image(*pixel + slip)) clicks.push_back({location, *pixel + slip});  // clicks are within the image
   }
   const int count = std::min(wrong, static_cast<int>(clicks.size()) / 2);
   for (int i = 0; i < count; ++i) {  // in turn put elsewhere and named as its neighbour

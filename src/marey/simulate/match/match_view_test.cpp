@@ -97,7 +97,7 @@ TEST(MatchView, BoxesHoldHeadAndFeetAndHideWhatIsBehind) {
       }
     }
   }
-  EXPECT_GT(hidden, 5) << "no person hides any person";
+  EXPECT_GT(hidden, 5) << "people never hide each other";
 }
 
 TEST(MatchView, TheDetectorErrsAsOftenAsItSays) {

@@ -80,7 +80,7 @@ struct TrueFigure {
 struct TrueBall {
   Vector<2> at = Vector<2>::Zero();  ///< px: its centre halfway through the exposure
   double radius = 0;                 ///< px
-  double visible_fraction = 0;       ///< of its disc: within the image and behind no person
+  double visible_fraction = 0;       ///< of its disc: within the image and not occluded
 };
 
 struct RenderedFrame {

@@ -223,7 +223,7 @@ void BodyTracker::settle_near(int body, std::span<const BodyTrackPoint> points) 
     const Vector<3>& location = one.locations[m];
     const Vector<3>& point = points[static_cast<std::size_t>(candidates[m])].position;
     for (std::size_t i = 0; i < locations.size(); ++i) {
-      // Which of them is right, no person knows.
+      // Which of them is right cannot be decided.
       if (std::abs((locations[i] - location).norm() - (detected[i] - point).norm()) > 2 * options_.tolerance) {
         std::fill(one.point_of.begin(), one.point_of.end(), assign::kNoIndex);
         return;

@@ -189,7 +189,7 @@ TEST(BodyTracker, ASymmetricBodyComesBackAsItWas) {
     scene.bodies.push_back(moving::body_of(1, {{-0.1, 0, 0}, {0.1, 0, 0}, {0, 0, 0.2}, {0, 0, -0.15}}));
     scene.paths.emplace_back(random, Vector<3>(0, 0, 1));
     BodyTracker tracker(scene.bodies);
-    bool rotated = false;  // which of the two poses it took at first, no person can know
+    bool rotated = false;  // which of the two poses it took at first, is undecidable
     for (int i = 0; i < 500; ++i) {
       const bool hidden = i % 50 >= 35;
       const auto points = observed_at(scene, i / 100.0, random, [&](auto, auto) { return !hidden; });

@@ -4,7 +4,7 @@
 // little, and also a wrong answer fit itself. So at the end the names are held against the learned distances and sides again,
 // together with what a search that moves one name at a time does not reach: two names exchanged, two pairs of a cluster exchanged
 // at once (a flat cluster turned over, which keeps its inner distances), three names in a ring, and a row of names along a limb
-// shifted by one into a name that no person has. Of a name the tightest distances count whole, and all others a share, because they
+// shifted by one into an unused name. Of a name the tightest distances count whole, and all others a share, because they
 // repeat one posture. Points that lie elsewhere about their neighbours than in the learned posture cost too: half a turn of a head
 // is decided by the shoulders. An alternative that is better is taken; one that is barely worse leaves its names undecided.
 #pragma once

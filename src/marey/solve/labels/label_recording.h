@@ -50,7 +50,7 @@ struct LabelOptions {
   int initialises = 6;  ///< instants at which names are searched for from nothing
   int rounds = 4;
   std::size_t neighbours = 8;  ///< that say how well a name fits
-  double min_fit = 4;          ///< log-likelihood ratio, mean over a tracklet's life, below which no person gets the name
+  double min_fit = 4;          ///< log-likelihood ratio, mean over a tracklet's life, below which the name is not given
   double min_margin = 3;       ///< that the name must be better than the next one
   ScalingOptions scaling;
   bool scale_to_person = true;  ///< where a set that one person taught does not fit

@@ -2,7 +2,7 @@
 //
 // A track is cut where it has a gap, and where it jumps: where it is neither where the motion before nor where the motion after
 // says. That is where trackers exchange markers. A piece is then tied to the one that continues where it is due, if no other end
-// and no other beginning comes into question: so what was exchanged is corrected before any person asks for names.
+// and no other beginning comes into question: so what was exchanged is corrected before names are searched for.
 #pragma once
 
 #include <cstdint>

@@ -35,7 +35,7 @@ class AddressOptions {
   /// "yes" and "no" beside numbers with commas between, as many as wanted.
   void numbers(const char* name, std::vector<double>& values, std::size_t count);
 
-  /// Throws Error for an option that no person asked for.
+  /// Throws Error for an unknown option.
   void done() const;
 
  private:

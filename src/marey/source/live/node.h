@@ -1,6 +1,6 @@
 // A camera node: cameras of another computer, by a WebSocket for each camera of each host. The node answers questions: a camera's
 // name with what it knows of it and the time by its clock, an empty question with its rig, and what a camera is set to, or is to be
-// set to (node_message.h); and it sends each frame of the camera that a host subscribed to. Frames that no person could take in
+// set to (node_message.h); and it sends each frame of the camera that a host subscribed to. Frames that no host could take in
 // time are dropped, never kept.
 #pragma once
 

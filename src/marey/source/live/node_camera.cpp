@@ -80,7 +80,7 @@ class NodeLine {
       }
       if (++answered_ > requested_ || message->size() > kLongestAnswer)
         throw Error("{}: it is not a node of Marey, or one of another version", location_.node());
-      if (answered_ < requested_) continue;  // to a question that no person waits for any more
+      if (answered_ < requested_) continue;  // to a question whose caller has left
       answer_ = std::move(message);
       return;  // when it came matters
     }

@@ -5,7 +5,7 @@
 namespace marey::source::live {
 namespace {
 
-/// Luma as it is; of chroma, every second row: the rows between are as good, and no person sees the difference at half size.
+/// Luma as it is; of chroma, every second row: the rows between are as good, and the difference is not visible at half size.
 Image unpacked_yuyv(std::span<const std::uint8_t> bytes, cv::Size size, std::size_t stride) {
   const cv::Size half((size.width + 1) / 2, (size.height + 1) / 2);
   cv::Mat luma(size, CV_8UC1), cb(half, CV_8UC1), cr(half, CV_8UC1);

@@ -11,7 +11,7 @@
 namespace marey::source::live {
 
 /// Gives a source's frames when their times have come, as if they were taken now; `begin` is when its time is 0. Frames that
-/// no person could take in time (their decoding takes too long) are omitted, and count as lost.
+/// were not taken in time (their decoding takes too long) are omitted, and count as lost.
 struct PlayOptions {
   std::function<Timestamp()> begin;  ///< asked once, when it is connected; several cameras' is one
   bool loop = false;                 ///< from the beginning again, without end

@@ -137,7 +137,7 @@ void add_rests(std::span<const BallObservations> time_steps, const GroundViews& 
   const std::ptrdiff_t count = std::ssize(reported);
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto& here = reported[static_cast<std::size_t>(i)];
-    if (!here || here->belief.location().z() > kHigh) continue;  // it flew from elsewhere, as far as any person knows
+    if (!here || here->belief.location().z() > kHigh) continue;  // it flew from elsewhere, as far as is known
     for (const std::ptrdiff_t step : {-1, 1}) {
       const std::ptrdiff_t next = i + step;
       if (next < 0 || next >= count || reported[static_cast<std::size_t>(next)]) continue;

@@ -16,7 +16,7 @@ struct BallRestOptions {
   double inspect = 1.5;     ///< s before and after, in which it must have been seen,
   double detected = 0.6;    ///< in this share of instants on the one side,
   double gone = 0.15;       ///< and no more than this on the other
-  double unobserved = 1.5;  ///< s without its being seen, after which no person knows
+  double unobserved = 1.5;  ///< s unobserved, after which its position is unknown
 };
 
 /// Adds to `way`, where it begins and ends, the instants at which the ball lay still. `way` has one entry an instant.

@@ -133,7 +133,7 @@ TEST(BallWay, ReportsRestingPositionAfterKick) {
     ASSERT_TRUE(states[i]) << i;
     EXPECT_LT((states[i]->belief.location() - ball[i]).norm(), 0.2) << i;
   }
-  ball.resize(lay);  // no person kicks it: a bit of paint
+  ball.resize(lay);  // it is never kicked: a bit of paint
   for (const auto& state : reported(detected(ball, {10, 50}, 3, 0.1, 14))) EXPECT_FALSE(state);
 }
 

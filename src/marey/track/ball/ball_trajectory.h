@@ -21,7 +21,7 @@ struct BallTrajectoryOptions {
   double min_trajectory = 1.5;  ///< and m that it must get
   double as_people = 4;         ///< m/s; what is no faster, or mostly beyond the lines, may be a person not detected,
   double min_slow = 120;        ///< and needs that much evidence
-  double unobserved = 1.5;      ///< s without any person having seen it well, after which no person knows where it is,
+  double unobserved = 1.5;      ///< s without a good observation, after which its position is unknown,
   double unobserved_held = 4;   ///< but where the same person has it all the while
 };
 

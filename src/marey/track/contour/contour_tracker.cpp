@@ -1,5 +1,5 @@
 // The system of Arnaut & Costa with what it lacked. Each target is predicted and corrected by measurement lines
-// (line_correction.h); then the tracker says who was seen where: a silhouette that no person shares is taken whole
+// (line_correction.h); then the tracker says who was seen where: an unshared silhouette is taken whole
 // (lone_silhouette.h), a region that several share is divided among them (shared_outlines.h), and an outline that left its target
 // is brought back (outline_report.h). Targets, and regions, are independent of each other within a step, and are processed on
 // several threads; what decides about all of them runs before and after, on one. Reference: Arnaut & Costa, TECCEN 2(1), 2009.
@@ -112,7 +112,7 @@ class ContourTracker::Implementation {
     each([&](LineCorrection& lines, ContourTarget& target) { lines.correct(target, targets_, mask, dt); });
   }
 
-  /// Of each track whether its target took the outline of a silhouette that no person shares (`taken_`).
+  /// Of each track whether its target took the outline of an unshared silhouette (`taken_`).
   void take_silhouettes(std::span<const Detection> detections) {
     taken_.assign(tracks_.size(), 0);
     tbb::parallel_for(
@@ -198,7 +198,7 @@ class ContourTracker::Implementation {
                       .box = box});
   }
 
-  /// Targets that no person saw alone, region by region: those whose boxes meet, and those that the detector says share theirs.
+  /// Targets that were not observed alone, region by region: those whose boxes meet, and those that the detector says share theirs.
   void divide_shared() {
     for (const Shared& one : shared_) {
       if (target_of(one.id) != nullptr || one.box.height < options_.min_height) continue;

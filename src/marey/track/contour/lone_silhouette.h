@@ -18,7 +18,7 @@ namespace marey::track::contour {
 /// legs, or found the ground's shadow alike, are mistaken. Not where there is no outline.
 bool is_whole(const std::optional<geometry::ClosedSpline>& outline, const Box& silhouette);
 
-/// Takes outlines from silhouettes that no person shares, and learns from them their targets' appearance. Several threads may do so
+/// Takes outlines from silhouettes of one target alone, and learns from them their targets' appearance. Several threads may do so
 /// for distinct targets.
 class LoneSilhouettes {
  public:

@@ -50,7 +50,7 @@ double width_of(const Box& box) {
   return std::max(box.width, kStrideWidth * box.height);
 }
 
-/// Whether a silhouette that no person shares explains what is unlike the tracker's box: a body that bends or squats keeps its
+/// Whether the silhouette of one target alone explains what is unlike the tracker's box: a body that bends or squats keeps its
 /// feet.
 bool is_explained(const Box& own, const Box& box, const Detection* raw) {
   if (raw == nullptr || raw->group) return false;

@@ -17,7 +17,7 @@ namespace marey::track::contour {
 void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw);
 
 /// The target's outline as it is written; nothing if the contour is not an outline of a target of this size. `seen` is the
-/// silhouette that no person shares, if any; `picture` its frame's size, px, empty if that is not known.
+/// silhouette of one target alone, if any; `picture` its frame's size, px, empty if that is not known.
 std::shared_ptr<const Outline> report(ContourTarget& target, const Detection* detected, const Track<2>& track,
                                       const cv::Size& image);
 

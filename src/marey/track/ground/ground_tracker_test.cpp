@@ -168,7 +168,7 @@ TEST_P(EveryAssociation, LooksOfOtherTimesAreBroughtToTheInstant) {
 }
 
 TEST_P(EveryAssociation, DropsUnobservedPersonAfterDelay) {
-  // Seen for a second, then no person says anything: patience lasts 3 s, and the covariance grows in the meantime.
+  // Seen for a second, then nothing is observed: patience lasts 3 s, and the covariance grows in the meantime.
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
   const auto tracker = make(views);
   double before = 0;

@@ -61,7 +61,7 @@ bool FilterTracker::was_observed_recently(const Target& target) const {
   return seconds(*now_ - target.last_observed) < std::max(kRecently, kNextFrame * dt_);
 }
 
-/// The part of its unseen time that counts against a target: where frames are far apart, no person could have been seen between
+/// The part of its unseen time that counts against a target: where frames are far apart, nothing could have been observed between them
 /// them.
 double FilterTracker::missed_for(const Target& target) const {
   return seconds(*now_ - target.last_observed) - std::max(0.0, dt_ - kReferenceStep);
@@ -82,7 +82,7 @@ double FilterTracker::gain(const Target& target, const Observation<2>& observati
   }
   spread -= 2 * 2 * std::log(target.unit * kReferenceSigma);
   const double missed = missed_for(target);
-  // Frames far apart, or a filter that expects much, make the prediction wide; that alone makes no person another person.
+  // Frames far apart, or a filter that expects much, make the prediction wide; that alone does not make it another person.
   if (seconds(*now_ - target.last_observed) <= dt_) spread = std::min(spread, kMaxSpread);
   double cost = distance + spread;
   double room = kClutterRoom + clutter_.room() - 2 * missed / options_.fading;

@@ -1,5 +1,5 @@
 // What is trusted of each instant while a recording continues, from what a tracker says: a target is held back until it is
-// confirmed, and what no person saw is reported only as long as the odds are that the target is there, and there.
+// confirmed, and an unobserved target is reported only as long as the odds are that the target is there, and there.
 //
 // How long a person who is not seen may still be trusted in is learned from the recording: each time a target is seen again, the
 // gap says how long people stay unseen who have not left; each time one is given up, that it had left (or never was). The share of

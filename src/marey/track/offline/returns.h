@@ -24,7 +24,7 @@ struct ReturnOptions {
   double longest_away = 15;       ///< s
   double shortest_away = 0.4;     ///< s
   double typically_away = 5;      ///< s: a person comes back at any time up to this, more rarely later
-  double min_probability = 0.95;  ///< of a pair, to be joined; above 1: no person is
+  double min_probability = 0.95;  ///< of a pair, to be joined; above 1: none is
   double along = 0.06;    ///< heights along the border for each second away, at its sides; a person walks away from us there
   double across = 0.4;    ///< the same at its top and bottom
   double anywhere = 0.1;  ///< share of those who come back anywhere along the border

@@ -55,7 +55,7 @@ TEST(RigidNeighbours, AHiddenMarkerGoesWithItsBone) {
       EXPECT_LT((location->position - truth[marker]).norm(), 0.004);
       EXPECT_LT(std::sqrt(location->variance), 0.01);
     }
-    EXPECT_FALSE(companions.position_of(10)) << "no person goes with this one";
+    EXPECT_FALSE(companions.position_of(10)) << "this one has no neighbours";
   }
 }
 

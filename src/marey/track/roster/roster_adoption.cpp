@@ -112,7 +112,7 @@ std::optional<double> RosterAdoption<D>::cost(const Target& target, const Vector
   const bool rotated = rotated_to(target, location);
   if (!rotated && !target.near(location)) return std::nullopt;
   if (const auto misfit = neighbours.misfit(target, location)) return *misfit < kMaxMisfit ? misfit : std::nullopt;
-  // Where the body has gone in the meantime no person knows: the distances of a newcomer will prove who it is.
+  // Where the body has gone in the meantime is unknown: the distances of a newcomer will prove who it is.
   if (newcomer != nullptr || target.unobserved > kOwnMotion) return std::nullopt;
   const double path = rotated ? path_to(target, location) : (location - target.filter.position()).norm();
   if (!rotated && path > kShortPath * target.width) return std::nullopt;

@@ -10,7 +10,7 @@
 
 namespace marey::track::contour::colour {
 
-/// A target's appearance, learned while no person hides it: the colours of its body from head to foot, and what places about its
+/// A target's appearance, learned while it is not occluded: the colours of its body from head to foot, and what places about its
 /// centre it covers how often. Places are in heights of the target from its centre of area.
 class BodyModel {
  public:

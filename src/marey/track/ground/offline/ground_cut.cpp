@@ -87,7 +87,7 @@ class Cutter {
     for (std::size_t i = from; i < to; ++i) {
       const auto n = static_cast<double>(i - from);
       const auto m = static_cast<double>(to - i);
-      // Within a track another person may have passed in front; before it begins and after it ends no person knows of that.
+      // Within a track another person may have passed in front; before it begins and after it ends that is unknown.
       const std::size_t before_it = from == 0 ? 1 : min_bins, after_it = to == bins_.size() ? 1 : min_bins;
       if (i - from >= before_it && to - i >= after_it) {
         const double apart = (before / n - (all - before) / m).norm();

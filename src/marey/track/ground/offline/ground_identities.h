@@ -50,7 +50,7 @@ struct GroundIdentities {
   };
   /// One person's segments, in the order of time.
   struct Path {
-    int name = -1;  ///< −1: no person named it
+    int name = -1;  ///< −1: not named by the user
     std::vector<int> segments;
   };
   /// Two met. `probability`: that `paths` should have been exchanged from there on.
