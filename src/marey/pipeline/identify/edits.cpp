@@ -28,7 +28,7 @@ class Owners {
       segments_[people.tracklets[static_cast<std::size_t>(tracklet)].runs.front().track].push_back(static_cast<int>(s));
     }
     for (const GroundIdentities::Path& path : found.paths) {
-      for (std::size_t i = 1; i < path.segments.size(); ++i) tracks_[path.segments[i - 1]] = path.segments[i];
+      for (std::size_t i = 1; i < path.segments.size(); ++i) successor_[path.segments[i - 1]] = path.segments[i];
     }
     for (auto& taken : taken_) taken.assign(recording.instants().size(), false);
   }
@@ -76,15 +76,15 @@ class Owners {
     if (instant < segment(segments.front()).first) return segment(segments.front()).path;
     const auto after = first_after(segments, instant);
     const int before = *std::prev(after);
-    const auto next = tracks_.find(before);
-    if (after == segments.end()) return next == tracks_.end() ? segment(before).path : kNoPath;
-    return next != tracks_.end() && next->second == *after ? segment(before).path : kNoPath;
+    const auto next = successor_.find(before);
+    if (after == segments.end()) return next == successor_.end() ? segment(before).path : kNoPath;
+    return next != successor_.end() && next->second == *after ? segment(before).path : kNoPath;
   }
 
   const GroundIdentities& found_;
   const Recording& recording_;
   std::map<TrackId, std::vector<int>> segments_;  // of each track, by time
-  std::map<int, int> tracks_;                     // of segments, within paths
+  std::map<int, int> successor_;                     // of segments, within paths
   std::vector<std::vector<bool>> taken_;          // of each path, by instant
 };
 

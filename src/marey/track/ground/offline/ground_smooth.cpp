@@ -12,7 +12,7 @@ namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
 constexpr int kPasses = 3;
-constexpr double round_time_step = 0.5;  // s before and after within which the strength of pushes is measured
+constexpr double push_memory = 0.5;  // s before and after within which the strength of pushes is measured
 constexpr double strongest = 3;          // in units of the pushes' typical power
 constexpr double shared_memory = 0.5;    // s for which errors persist of who is seen in one region with others
 
@@ -103,7 +103,7 @@ struct SmoothingPass {
 void weigh_pushes(SmoothingPass& detected) {
   const std::size_t n = detected.samples.size();
   const double typical = 2 * settled(detected.motion)(1, 1);
-  const auto mix = [&](std::size_t i) { return std::exp(-detected.seconds_to(i) / round_time_step); };
+  const auto mix = [&](std::size_t i) { return std::exp(-detected.seconds_to(i) / push_memory); };
   std::vector<double> power(n);
   for (std::size_t i = 0; i < n; ++i) power[i] = detected.time_steps[i].acceleration.squaredNorm() / typical;
   detected.pushes = power;

@@ -22,13 +22,13 @@ class Swapper {
   }
 
   /// Whether the two were exchanged.
-  bool settle(const CloseEncounter& close_encounter) {
-    const int a = holder_[close_encounter.a];
-    const int b = holder_[close_encounter.b];
-    const auto gain = gain_of_swap(samples_of(a), samples_of(b), close_encounter, times_, colours_, options_);
+  bool settle(const CloseEncounter& encounter) {
+    const int a = holder_[encounter.a];
+    const int b = holder_[encounter.b];
+    const auto gain = gain_of_swap(samples_of(a), samples_of(b), encounter, times_, colours_, options_);
     if (!gain || *gain < options_.certainly) return false;
-    interchange(a, b, close_encounter.nearest);
-    std::swap(holder_[close_encounter.a], holder_[close_encounter.b]);
+    swap_later_parts(a, b, encounter.nearest);
+    std::swap(holder_[encounter.a], holder_[encounter.b]);
     return true;
   }
 
@@ -49,7 +49,7 @@ class Swapper {
 
   std::span<const GroundSample> samples_of(int tracklet) const { return tracklets_[tracklet].samples; }
 
-  void interchange(int a, int b, std::int32_t instant) {
+  void swap_later_parts(int a, int b, std::int32_t instant) {
     GroundTracklet later_a = split(tracklets_[a], index_from(tracklets_[a].samples, instant));
     GroundTracklet later_b = split(tracklets_[b], index_from(tracklets_[b].samples, instant));
     append(tracklets_[a], later_b);
@@ -66,10 +66,10 @@ class Swapper {
 }  // namespace
 
 int repair_swaps(std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times, const SwapRepairOptions& options) {
-  Swapper exchanger(tracklets, times, options);
+  Swapper swapper(tracklets, times, options);
   int swapped = 0;
-  for (const CloseEncounter& close_encounter : find_encounters(tracklets, times, options.near))
-    swapped += exchanger.settle(close_encounter) ? 1 : 0;
+  for (const CloseEncounter& encounter : find_encounters(tracklets, times, options.near))
+    swapped += swapper.settle(encounter) ? 1 : 0;
   return swapped;
 }
 

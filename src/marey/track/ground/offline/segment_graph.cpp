@@ -76,7 +76,7 @@ class GraphOfSegments {
       const int node = static_cast<int>(graph_.nodes.size());
       graph_.nodes.push_back({.tracklet = tracklet, .first = from, .last = std::max(cut.from, from) - 1, .role = {}, .names = {}});
       from = std::max(cut.from, from);
-      graph_.tracks.push_back(cut.close_encounter == assign::kNoIndex ? assign::kNoIndex : node + 1);
+      graph_.successors.push_back(cut.close_encounter == assign::kNoIndex ? assign::kNoIndex : node + 1);
       if (cut.close_encounter == assign::kNoIndex) continue;
       SegmentGraph::Crossing& crossing = graph_.crossings[static_cast<std::size_t>(cut.close_encounter)];
       const std::size_t side = close_encounters[static_cast<std::size_t>(cut.close_encounter)].a == tracklet ? 0 : 1;
@@ -84,7 +84,7 @@ class GraphOfSegments {
       crossing.after[side] = node + 1;
     }
     graph_.nodes.push_back({.tracklet = tracklet, .first = from, .last = samples.back().instant, .role = {}, .names = {}});
-    graph_.tracks.push_back(assign::kNoIndex);
+    graph_.successors.push_back(assign::kNoIndex);
     last_.push_back(static_cast<int>(graph_.nodes.size()) - 1);
   }
 
