@@ -1,20 +1,20 @@
-# marey_unity(TARGET GROUP MOST SOURCE ...)
+# marey_unity(TARGET GROUP MAX SOURCE ...)
 #
-# With MAREY_UNITY the compiler reads the sources of a group together, up to MOST at a time. What costs is the headers (Eigen, OpenCV, fmt, the standard
-# library) and what is instantiated out of them, and one source alone needs as much of that as all: seven rooms of 38 sources took 70 s of the processor
-# one by one and 48 s as one unit. A group is a room with its inner rooms, or a program. Where sources instantiate much, units are smaller: 21 of calibrate
-# at once need 2 GB. A source with flags of its own stays alone. Therefore names in unnamed namespaces are distinct in a room, and no source has
-# `using namespace` at its top.
-# A precompiled header of the usual heads (Eigen, OpenCV, fmt, core) was tried on top: it is 205 MB, and a unit takes as long with it (on a busy machine, evaluate 9.2 s of the
-# processor against 9.7) or longer (assign 8.6 against 4.5), because reading it costs what parsing the part that is needed does.
-# CMake's own unity builds name their sources by where the checkout lies, so that no compiler's cache serves two of them; these do not.
-function(marey_unity target group most)
+# With MAREY_UNITY the sources of a group are compiled together, up to MAX in one unit. The cost is in the headers (Eigen, OpenCV, fmt, the standard
+# library) and in what is instantiated from them, and one source needs nearly as much of that as all: seven folders of 38 sources took 70 s of processor
+# time one by one and 48 s as one unit. A group is a top folder with its subfolders, or a program. Where sources instantiate much, units are smaller: 21 of
+# calibrate in one unit need 2 GB. A source with its own flags is compiled alone. Therefore names in unnamed namespaces are distinct within a folder, and
+# no source has `using namespace` at its top.
+# A precompiled header of the common ones (Eigen, OpenCV, fmt, core) was tried in addition: it is 205 MB, and a unit takes as long with it (on a busy machine,
+# evaluate 9.2 s of processor time against 9.7) or longer (assign 8.6 against 4.5), because reading it costs what parsing the needed part does.
+# CMake's own unity builds name their sources by the path of the checkout, so that two checkouts cannot share a compiler cache; these do not.
+function(marey_unity target group max)
   if(NOT MAREY_UNITY)
     return()
   endif()
   get_property(sources GLOBAL PROPERTY MAREY_UNITY_${target}_${group})
-  if(NOT sources)  # written when all the group's sources and their own flags are known
-    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${PROJECT_SOURCE_DIR}]] CALL marey_write_units ${target} ${group} ${most})")
+  if(NOT sources)  # written when all sources of the group and their flags are known
+    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${PROJECT_SOURCE_DIR}]] CALL marey_write_units ${target} ${group} ${max})")
   endif()
   foreach(source IN LISTS ARGN)
     cmake_path(ABSOLUTE_PATH source)
@@ -22,7 +22,7 @@ function(marey_unity target group most)
   endforeach()
 endfunction()
 
-function(marey_write_units target group most)
+function(marey_write_units target group max)
   get_property(sources GLOBAL PROPERTY MAREY_UNITY_${target}_${group})
   set(together "")
   foreach(source IN LISTS sources)
@@ -36,8 +36,8 @@ function(marey_write_units target group most)
   if(count EQUAL 0)
     return()
   endif()
-  # Units of the same size: where twelve may stand together thirteen sources are seven and six, not twelve and one.
-  math(EXPR units "(${count} + ${most} - 1) / ${most}")
+  # Units of equal size: with a maximum of twelve, thirteen sources become seven and six, not twelve and one.
+  math(EXPR units "(${count} + ${max} - 1) / ${max}")
   math(EXPR size "(${count} + ${units} - 1) / ${units}")
   set_source_files_properties(${together} TARGET_DIRECTORY ${target} PROPERTIES HEADER_FILE_ONLY ON)
   set(folder ${PROJECT_BINARY_DIR}/units)
@@ -57,9 +57,9 @@ function(marey_write_units target group most)
   endforeach()
 endfunction()
 
-# With MAREY_SANITIZE_FOLDERS: the unit is built with the sanitizers where one of its sources lies in those. All others are compiled as in a release, so
-# that a compiler's cache has them, and tests run nearly as fast. Eigen would allocate in another way under the address sanitizer than in the units without
-# it; it is told that memory is aligned, as it is there too.
+# With MAREY_SANITIZE_FOLDERS a unit is built with the sanitizers if one of its sources is in these folders. All others are compiled as in a release, so
+# that a compiler cache has them and tests run nearly as fast. Eigen would allocate differently under the address sanitizer than in the units without it;
+# a definition states that memory is aligned, as it is in both.
 function(marey_sanitize_unit target unit)
   foreach(source IN LISTS ARGN)
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
@@ -72,14 +72,14 @@ function(marey_sanitize_unit target unit)
   endforeach()
 endfunction()
 
-# Rooms whose inner rooms are as large as other rooms: each of them is a group of its own, of smaller units.
-set(MAREY_LARGE_ROOMS calibrate format solve)
+# Folders whose subfolders are as large as other folders: each subfolder is a separate group, of smaller units.
+set(MAREY_LARGE_FOLDERS calibrate format solve)
 
 # marey_module(NAME [SOURCES ...] [VIDEO_SOURCES ...] [TESTS ...] [TEST_LIBRARIES ...])
 #
-# Adds one room of src/marey, "detect" or "detect/markers", to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
-# `marey_video`, because loading that costs a hundred shared libraries at every start. Where SOURCES are left out they are all of the folder's that are
-# no tests: a room of formats takes a new one without being told. TESTS become one program, NAME_test.
+# Adds one folder of src/marey, "detect" or "detect/markers", to the library. SOURCES go into `marey`; VIDEO_SOURCES, which need FFmpeg, go into
+# `marey_video`, because that loads a hundred shared libraries at every start. Without SOURCES, all sources of the folder that are not tests are added: a
+# new format needs no change here. TESTS become one program, NAME_test.
 function(marey_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;VIDEO_SOURCES;TESTS;TEST_LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS)
@@ -93,42 +93,42 @@ function(marey_module name)
   list(TRANSFORM arg_VIDEO_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   target_sources(marey PRIVATE ${arg_SOURCES})
   target_sources(marey_video PRIVATE ${arg_VIDEO_SOURCES})
-  string(REGEX MATCH "^[^/]+" room ${name})
-  set(most 24)
-  if(room IN_LIST MAREY_LARGE_ROOMS)
-    string(REPLACE "/" "_" room ${name})
-    set(most 12)
+  string(REGEX MATCH "^[^/]+" group ${name})
+  set(max 24)
+  if(group IN_LIST MAREY_LARGE_FOLDERS)
+    string(REPLACE "/" "_" group ${name})
+    set(max 12)
   endif()
-  marey_unity(marey ${room} ${most} ${arg_SOURCES})
-  marey_unity(marey_video ${room} ${most} ${arg_VIDEO_SOURCES})
+  marey_unity(marey ${group} ${max} ${arg_SOURCES})
+  marey_unity(marey_video ${group} ${max} ${arg_VIDEO_SOURCES})
   if(MAREY_TESTS AND arg_TESTS)
     string(REPLACE "/" "." prefix ${name})
     string(REPLACE "/" "_" name ${name})
     add_executable(${name}_test ${arg_TESTS})
     target_link_libraries(${name}_test PRIVATE marey_video GTest::gtest_main marey_warnings marey_test_support ${arg_TEST_LIBRARIES})
-    # Two thirds of the compiler's time; what takes long is in the library. At -O1 GCC takes an empty std::optional for uses of what is not set.
+    # Two thirds of the compile time; slow code is in the library. At -O1 GCC reports an empty std::optional as a use of an unset value.
     target_compile_options(${name}_test PRIVATE $<$<CONFIG:Release>:-O1> $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)
     marey_unity(${name}_test all 12 ${arg_TESTS})
     gtest_discover_tests(${name}_test TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
   endif()
 endfunction()
 
-# What every target of ours is compiled with: warnings, and the sanitizers where asked for.
+# Flags of every target of the project: warnings, and the sanitizers if requested.
 add_library(marey_warnings INTERFACE)
 target_compile_options(marey_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                        $<$<BOOL:${MAREY_WERROR}>:-Werror>
-                       # A source that others include is no header: its unnamed namespace may be a member's type.
+                       # A source included by a unit is not a header: a member may have a type of its unnamed namespace.
                        $<$<AND:$<BOOL:${MAREY_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
-                       # A name of one source hides that of another, which it never saw.
+                       # A name of one source may hide a name of another one in the unit.
                        $<$<AND:$<BOOL:${MAREY_UNITY}>,$<CXX_COMPILER_ID:Clang>>:-Wno-shadow>
-                       # libstdc++ 12's own stable_sort and stable_partition call what it has deprecated, and clang tells.
+                       # libstdc++ 12's stable_sort and stable_partition call deprecated functions, and clang reports that.
                        $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>)
-# GCC clears up what it allocated from 128 MB on, again and again where a unit needs a gigabyte. From half a gigabyte on a unit of 0.5 GB took 9.1 s of the
-# processor instead of 9.9, and 0.6 GB; the largest (calibrate) needs 2 GB.
+# By default GCC collects garbage from 128 MB on, again and again in units that need a gigabyte. With a threshold of half a gigabyte, a unit of 0.5 GB took
+# 9.1 s of processor time instead of 9.9, and 0.6 GB; the largest (calibrate) needs 2 GB.
 if(MAREY_UNITY)
   target_compile_options(marey_warnings INTERFACE "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=524288 --param ggc-min-expand=200>")
 endif()
-# A release is built hard: what runs over a buffer or out of a container ends the program. Not with sanitizers, which see more.
+# A release is hardened: an access outside of a buffer or container ends the program. Not with sanitizers, which detect more.
 if(NOT MAREY_SANITIZE OR MAREY_SANITIZE_FOLDERS)
   target_compile_options(marey_warnings INTERFACE $<$<CONFIG:Release>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3;-fstack-protector-strong;-D_GLIBCXX_ASSERTIONS>)
 endif()

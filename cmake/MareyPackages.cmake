@@ -1,5 +1,5 @@
 # Debian packages by CPack: `marey` is the program with its completions and manual pages, `libmarey-dev` the libraries and headers,
-# `python3-marey` the Python package, `marey-models` the networks that script/model made. script/package builds them; docs/install.md tells how they are installed.
+# `python3-marey` the Python package, `marey-models` the networks that script/model made. script/package builds them; docs/install.md describes their installation.
 set(words ${PROJECT_BINARY_DIR}/words)  # written by script/package out of the help texts
 install(DIRECTORY ${words}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program OPTIONAL)
 install(FILES ${words}/marey.bash DESTINATION share/bash-completion/completions RENAME marey COMPONENT program OPTIONAL)
