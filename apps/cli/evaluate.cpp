@@ -40,7 +40,7 @@ std::string frames_of(const std::vector<LabelledBox>& boxes) {
 
 /// What a user should know before believing the figures.
 std::vector<std::string> warnings_of(const EvaluateOptions& options, const format::tracks::MotTable& truth,
-                                      const format::tracks::MotTable& tracks, const evaluate::Evaluation& result) {
+                                     const format::tracks::MotTable& tracks, const evaluate::Evaluation& result) {
   std::vector<std::string> sentences = truth.warnings;
   sentences.insert(sentences.end(), tracks.warnings.begin(), tracks.warnings.end());
   if (truth.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box that is to be evaluated", options.truth));

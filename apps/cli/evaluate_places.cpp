@@ -122,7 +122,7 @@ void print_table(const pipeline::take::MatchEvaluation& judgement, double distan
 
 /// What a user should know before believing the figures.
 std::vector<std::string> warnings_of(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
-                                      const Recording& tracks, const pipeline::take::MatchEvaluation& judgement) {
+                                     const Recording& tracks, const pipeline::take::MatchEvaluation& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
   const bool truth_is_empty = truth.samples() == 0, tracks_are_empty = tracks.samples() == 0;
   if (truth_is_empty) sentences.push_back(fmt::format("{}: no person is in it", truth_name));

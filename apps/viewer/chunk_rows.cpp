@@ -182,6 +182,24 @@ std::string with_tracks(const std::string& segment, const WireColumns& columns, 
   return bytes;
 }
 
+std::string with_poses(std::string segment, const WireColumns& columns, std::int64_t first,
+                       const std::vector<BodyColumns>& bodies) {
+  const SegmentLayout at(segment, columns);
+  for (std::size_t instant = 0, pose = 0; instant < at.instants; ++instant) {
+    for (const std::size_t end = number_at<std::uint32_t>(segment, at.pose_end + 4 * instant); pose < end; ++pose) {
+      const BodyId id{number_at<std::int32_t>(segment, at.bodies + 4 * pose)};
+      const auto body = std::ranges::find(bodies, id, &BodyColumns::body);
+      const auto row =
+          body == bodies.end() ? std::nullopt : body->row_at(static_cast<std::int32_t>(first + static_cast<std::int64_t>(instant)));
+      if (!row) continue;
+      const std::array<float, kPoseNumbers> numbers = pose_numbers(body->poses()[*row]);
+      for (std::size_t part = 0; part < numbers.size(); ++part)
+        std::memcpy(segment.data() + at.bodies + 4 * ((1 + part) * at.poses + pose), &numbers[part], sizeof(float));
+    }
+  }
+  return segment;
+}
+
 std::int64_t row_count(const std::string& segment) {
   return std::int64_t{number_at<std::uint32_t>(segment, kRowCountAt)} + number_at<std::uint32_t>(segment, kPoseCountAt);
 }

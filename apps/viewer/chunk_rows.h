@@ -32,6 +32,8 @@ bool has_tracks(const std::string& segment, const WireColumns& columns, std::int
 /// track.
 std::string with_tracks(const std::string& segment, const WireColumns& columns, std::int64_t first,
                         const std::vector<TrackColumns>& tracks);
+/// The chunk with these bodies' poses in the place of those it has of them; all else is as it was.
+std::string with_poses(std::string segment, const WireColumns& columns, std::int64_t first, const std::vector<BodyColumns>& bodies);
 /// Rows and poses.
 std::int64_t row_count(const std::string& segment);
 

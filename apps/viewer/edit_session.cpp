@@ -127,6 +127,8 @@ void EditSession::catch_up() {
     pipeline::take::EditHistory now = pipeline::take::edit_history(take_);
     if (now.state == shown_.state) return;
     recording_->put(pipeline::take::edited_tracks(take_, pipeline::take::tracks_between(shown_, now)));
+    const std::vector<BodyId> bodies = pipeline::take::bodies_between(shown_, now);
+    if (!bodies.empty()) recording_->put_poses(pipeline::take::edited_bodies(take_, bodies));
     shown_ = std::move(now);
     Bytes text = bytes_of(history_text(shown_));
     const std::lock_guard lock(mutex_);

@@ -22,7 +22,8 @@ namespace {
 
 constexpr int kEditedFrames = 300;
 
-/// Tracks 1, 2 and 3, called A, B and C, each at x = its number; C is not there in frames 50 to 54. A body beside them.
+/// Tracks 1, 2 and 3, called A, B and C, each at x = its number; C is not there in frames 50 to 54. And a body, of which
+/// another pose is in question in frames 100 to 199.
 Recording letters_and_a_body() {
   RecordingHeader header;
   header.rate_hz = 100;
@@ -45,6 +46,8 @@ Recording letters_and_a_body() {
     instant.bodies.emplace_back();
     instant.bodies.back().body = BodyId{1};
     instant.bodies.back().world_from_body = {Eigen::AngleAxisd(0.01 * frame, Vector<3>::UnitX()).toRotationMatrix(), {0, 0, 1}};
+    if (frame >= 100 && frame < 200)
+      instant.bodies.back().other = OtherPose{.world_from_body = {Matrix<3>::Identity(), {0, 0.1, 1}}, .probability = 0.4};
     recording.add(instant);
   }
   return recording;
@@ -154,6 +157,20 @@ TEST_F(EditedTake, ShowsWhatTheTakeIsAfterEachEdit) {
   EXPECT_EQ(requested("edit 3 8 rename A hip"), "done") << "a branch";
   EXPECT_EQ(requested("redo 9 9"), "refused " + path_ + ": there is nothing to be done again");
   EXPECT_EQ(requested("go 9 9 0"), "done");
+  EXPECT_EQ(bytes(), before_);
+}
+
+TEST_F(EditedTake, ShowsATurnedBody) {
+  show();
+  EXPECT_EQ(requested("edit 0 0 turn box 120:150"), "done");
+  EXPECT_NE(bytes(), before_);
+  EXPECT_EQ(bytes(), bytes_again());
+  EXPECT_EQ(versions(), (std::vector<int>{1, 1, 0})) << "only chunks with these frames";
+  EXPECT_EQ(requested("edit 1 1 turn box"), "done") << "those of 120 to 150 are turned back";
+  EXPECT_EQ(bytes(), bytes_again());
+  EXPECT_EQ(requested("undo 2 2"), "done");
+  EXPECT_EQ(bytes(), bytes_again());
+  EXPECT_EQ(requested("undo 1 2"), "done");
   EXPECT_EQ(bytes(), before_);
 }
 

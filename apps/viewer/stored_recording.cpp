@@ -78,16 +78,12 @@ void StoredRecording::finish(std::vector<std::string> warnings) {
 }
 
 void StoredRecording::put(const std::vector<TrackColumns>& tracks) {
-  // No other person writes now: present data are read without the lock, and only the exchange takes it.
+  // Only this thread writes now: present data are read without the lock, and only the exchange takes it.
   std::int64_t first = 0;
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const std::int64_t begins = std::exchange(first, first + state_.segments[i].instants);
     if (has_tracks(*segments_[i], columns_, begins, tracks)) continue;
-    Bytes bytes = bytes_of(with_tracks(*segments_[i], columns_, begins, tracks));
-    const std::lock_guard lock(mutex_);
-    segments_[i] = std::move(bytes);
-    state_.segments[i].rows = row_count(*segments_[i]);
-    ++state_.segments[i].version;
+    replace_segment(i, bytes_of(with_tracks(*segments_[i], columns_, begins, tracks)));
   }
   for (const TrackColumns& track : tracks) {
     const auto known = courses_.find(track.id());
@@ -95,6 +91,21 @@ void StoredRecording::put(const std::vector<TrackColumns>& tracks) {
     const std::lock_guard lock(mutex_);
     courses_[track.id()] = std::move(course);
   }
+}
+
+void StoredRecording::put_poses(const std::vector<BodyColumns>& bodies) {
+  std::int64_t first = 0;
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    std::string bytes = with_poses(*segments_[i], columns_, std::exchange(first, first + state_.segments[i].instants), bodies);
+    if (bytes != *segments_[i]) replace_segment(i, bytes_of(std::move(bytes)));
+  }
+}
+
+void StoredRecording::replace_segment(std::size_t number, Bytes bytes) {
+  const std::lock_guard lock(mutex_);
+  segments_[number] = std::move(bytes);
+  state_.segments[number].rows = row_count(*segments_[number]);
+  ++state_.segments[number].version;
 }
 
 RecordingState::Course StoredRecording::course_of(const TrackColumns& track, int version) const {

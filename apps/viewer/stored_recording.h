@@ -57,6 +57,8 @@ class StoredRecording {
   /// After `finish`, from one thread: these tracks in the place of their previous rows; one without rows is there no more. Their
   /// `at` counts the instants that were added.
   void put(const std::vector<TrackColumns>& tracks);
+  /// Likewise these bodies' poses, of the instants at which the bodies were.
+  void put_poses(const std::vector<BodyColumns>& bodies);
 
   RecordingState state() const;
   /// Null where there is no such chunk yet.
@@ -67,6 +69,7 @@ class StoredRecording {
 
  private:
   void close_segment();
+  void replace_segment(std::size_t number, Bytes bytes);
   RecordingState::Course course_of(const TrackColumns& track, int version) const;
   void sample(const Vector<3>& position);
   std::optional<Extent> extent() const;

@@ -99,13 +99,8 @@ double confidence_byte(const Keypoint<2>& point) {
 void write_poses(ByteWriter& out, std::span<const Instant> instants) {
   const auto poses = &Instant::bodies;
   write_column<std::int32_t>(out, instants, poses, [](const BodyPose& pose) { return number(pose.body); });
-  for (int axis = 0; axis < 3; ++axis)
-    write_column<float>(out, instants, poses, [axis](const BodyPose& pose) { return pose.world_from_body.translation[axis]; });
-  for (int part = 0; part < 4; ++part) {
-    write_column<float>(out, instants, poses, [part](const BodyPose& pose) {
-      return Eigen::Quaterniond(pose.world_from_body.rotation).coeffs()[part];  // x, y, z, w
-    });
-  }
+  for (std::size_t part = 0; part < kPoseNumbers; ++part)
+    write_column<float>(out, instants, poses, [part](const BodyPose& pose) { return pose_numbers(pose.world_from_body)[part]; });
 }
 
 std::string columns_of(std::span<const Instant> instants, WireHeader header, const WireColumns& columns) {
@@ -145,6 +140,14 @@ std::vector<Item> of_camera(std::span<const Item> items, CameraId camera) {
 }
 
 }  // namespace
+
+std::array<float, kPoseNumbers> pose_numbers(const Rigid3& world_from_body) {
+  std::array<float, kPoseNumbers> numbers{};
+  Eigen::Map<Eigen::Vector3f>(numbers.data()) = world_from_body.translation.cast<float>();
+  Eigen::Map<Eigen::Vector4f>(numbers.data() + 3) =
+      Eigen::Quaterniond(world_from_body.rotation).coeffs().cast<float>();  // x, y, z, w
+  return numbers;
+}
 
 WireColumns wire_columns(const RecordingHeader& header) {
   const bool space = header.frame.dimensions() == 3;

@@ -19,6 +19,8 @@
 // no image.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -41,6 +43,10 @@ struct WireColumns {
 };
 /// Those of a recording with this header.
 WireColumns wire_columns(const RecordingHeader& header);
+
+/// A pose as the columns px to qw have it.
+inline constexpr std::size_t kPoseNumbers = 7;
+std::array<float, kPoseNumbers> pose_numbers(const Rigid3& world_from_body);
 
 /// Kind 1.
 std::string wire_of(std::span<const Instant> instants, std::uint32_t first, const WireColumns& columns);

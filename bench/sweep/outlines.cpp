@@ -28,7 +28,7 @@ using simulate::people::PeopleVideo;
 using simulate::people::RenderedFrame;
 using simulate::people::TrueFigure;
 
-constexpr int kEvery = 5;                           // frames, that are evaluated
+constexpr int kEvery = 5;                               // frames, that are evaluated
 constexpr double kMinOverlap = 0.2, kMaxOverlap = 0.7;  // of the smaller silhouette, shared: what is evaluated as an overlap
 
 struct Scene {

@@ -25,8 +25,8 @@ struct ColourMixture {
     Appearance colour;    ///< deviation: how much people of one kind differ
     double fraction = 0;  ///< of the weight
   };
-  std::vector<Kind> kinds;                 ///< largest share first
-  double odd = 0;                          ///< share of those who are of none
+  std::vector<Kind> kinds;                      ///< largest share first
+  double odd = 0;                               ///< share of those who are of none
   std::vector<std::vector<double>> membership;  ///< of each one given, the probability of each kind; the remainder to 1 is odd
 };
 

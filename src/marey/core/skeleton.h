@@ -58,7 +58,7 @@ struct Coordinate {
   };
 
   std::string name;
-  bool is_rotation = true;                  ///< an angle; otherwise a shift
+  bool is_rotation = true;                ///< an angle; otherwise a shift
   double rest = 0;                        ///< where it is when the skeleton rests
   std::optional<double> lowest, highest;  ///< what the joint allows
   bool locked = false;                    ///< it stays at `rest`

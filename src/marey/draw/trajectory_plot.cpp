@@ -82,7 +82,8 @@ void TrajectoryPlot::add(const Instant& instant) {
     const Vector<2> location = sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
     Trajectory& trajectory = trajectories_[sample.track];
     if (trajectory.pieces.empty() || trajectory.last_frame + 1 != instant.index) {
-      if (!trajectory.pieces.empty() && trajectory.pieces.back().back() != trajectory.last) trajectory.pieces.back().push_back(trajectory.last);
+      if (!trajectory.pieces.empty() && trajectory.pieces.back().back() != trajectory.last)
+        trajectory.pieces.back().push_back(trajectory.last);
       trajectory.pieces.push_back({location});
       trajectory.name = names_.shown(sample.track);
     } else if ((location - trajectory.pieces.back().back()).norm() >= kMinLength) {
@@ -111,7 +112,8 @@ std::string TrajectoryPlot::to_svg(const std::string& title) const {
     for (std::size_t i = 0; i < trajectory.pieces.size(); ++i) {
       std::vector<Vector<2>> points;
       for (const Vector<2>& pixel : trajectory.pieces[i]) points.push_back(page.location(pixel));
-      if (i + 1 == trajectory.pieces.size() && trajectory.pieces[i].back() != trajectory.last) points.push_back(page.location(trajectory.last));
+      if (i + 1 == trajectory.pieces.size() && trajectory.pieces[i].back() != trajectory.last)
+        points.push_back(page.location(trajectory.last));
       page.polyline(points, {{"stroke", colour}, {"stroke-width", 1.6}, {"stroke-linejoin", "round"}});
     }
     const Vector<2> begin = page.location(trajectory.pieces.front().front());

@@ -12,8 +12,8 @@
 
 namespace marey {
 
-/// Bytes from front to back: of a file, of what is not one (a pipe, a device), or with "-" of standard input. A pipe that no process
-/// writes to is waited for, from its opening on, and left when `stop` says so.
+/// Bytes from front to back: of a file, of what is not one (a pipe, a device), or with "-" of standard input. A pipe that no
+/// process writes to is waited for, from its opening on, and left when `stop` says so.
 class InputFile {
  public:
   /// Throws Error, one sentence that names `path`, where it cannot be opened.

@@ -48,7 +48,8 @@ Server::~Server() {
 
 bool Server::accept_all() {
   sweep();
-  // Clients that have left may not be noticed yet: those in line wait for a tick, and are refused if no other client has left by then.
+  // Clients that have left may not be noticed yet: those in line wait for a tick, and are refused if no other client has left by
+  // then.
   const bool refuses = std::exchange(full_, false) && connections_.size() >= options_.max_clients;
   for (;;) {
     if (connections_.size() >= options_.max_clients && !refuses) {

@@ -49,7 +49,7 @@ class LearnedNoise {
 
  private:
   static constexpr double kFirst = 0.5, kMinNoise = 0.03, kMaxNoise = 2;  // px
-  static constexpr int kMinPoints = 4;                                     // points
+  static constexpr int kMinPoints = 4;                                    // points
   static constexpr double kFarOff = 6;                                    // times the median
   static constexpr double kTail = 2.08;      // by definition: what 90 % of three rays' ratios stay below, of a plain Gaussian
   static constexpr double kFraction = 0.02;  // a frame

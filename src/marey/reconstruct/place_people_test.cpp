@@ -66,7 +66,8 @@ TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {
 }
 
 TEST(PlacePeople, OnACrownedPitchPeopleStandOnTheCrown) {
-  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera_by_touchline().camera_from_world(), {1920, 1080});
+  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera_by_touchline().camera_from_world(),
+                      {1920, 1080});
   const geometry::GroundSurface crowned{.middle = {0, 34}, .half = {52.5, 34}, .across = 0.3, .along = 0.2};
   for (double y = 6; y <= 62; y += 8) {
     const Vector<2> location(y / 4, y);
@@ -90,7 +91,8 @@ TEST(PlacePeople, OnACrownedPitchPeopleStandOnTheCrown) {
 }
 
 TEST(PlacePeople, ABoxThatEndsAtTheTipOfTheFootIsPlacedBehindIt) {
-  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera_by_touchline().camera_from_world(), {1920, 1080});
+  const Camera camera(geometry::BrownLens{{1500, 1500}, {959.5, 539.5}, {}}, camera_by_touchline().camera_from_world(),
+                      {1920, 1080});
   for (double y = 6; y <= 70; y += 8) {
     const Vector<2> from_camera = Vector<2>(y / 4, y) - Vector<2>(0, -14);
     const Vector<2> location(y / 4, y), tip = location - 0.1 * from_camera.normalized();

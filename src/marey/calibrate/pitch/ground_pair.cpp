@@ -39,7 +39,7 @@ constexpr double kOptimism = 1.5;   // by which errors that hang together for lo
 constexpr double kMinFree = 20;     // degrees of freedom that estimate the noise
 constexpr double kMinNoise = 0.02;  // and by how much less, or more, than covariances say
 constexpr int kNoiseRounds = 2;
-constexpr double kSamePeak_s = 0.5;    // a peak so near is the same one
+constexpr double kSamePeak_s = 0.5;  // a peak so near is the same one
 constexpr double kWalks_m = 1;       // who gets no farther within a segment stands
 constexpr double kMinMoving_s = 4;   // person-seconds of walking in the ground both see, that decide anything
 constexpr double kMinOverlap_s = 3;  // person-seconds in places that both see, that make an overlap
@@ -307,8 +307,8 @@ GroundOffset GroundPair::find(std::optional<double> near) {
   }
   if (fits.empty()) return result;
   const Fit& best = fits[0];
-  const auto rival =
-      std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kSamePeak_s; });
+  const auto rival = std::find_if(fits.begin() + 1, fits.end(),
+                                  [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kSamePeak_s; });
   const double gap = best.score - (rival == fits.end() ? 0 : rival->score);
   result.offset_s = best.shift_s;
   result.deviation_s = best.deviation_s;

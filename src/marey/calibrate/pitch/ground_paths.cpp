@@ -9,10 +9,10 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr double kReach_s = 0.5;      // of the parabola, to both sides
-constexpr double kNear_s = 0.25;      // something must have been seen so near on both sides
+constexpr double kReach_s = 0.5;        // of the parabola, to both sides
+constexpr double kNear_s = 0.25;        // something must have been seen so near on both sides
 constexpr std::size_t kMinSamples = 4;  // samples that make a parabola
-constexpr double kIndependent = 2;    // errors of a second's samples hang together: they are worth this many
+constexpr double kIndependent = 2;      // errors of a second's samples hang together: they are worth this many
 
 /// The parabola through `samples` about `time_s`; nothing if they do not hold it.
 std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples, double time_s) {

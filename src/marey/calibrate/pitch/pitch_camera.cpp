@@ -81,9 +81,9 @@ LensPrior prior_of(cv::Size size, bool free_lens) {
   return prior;
 }
 
-constexpr double kClickSigmaAlone = 3;         // px: how well people click
+constexpr double kClickSigmaAlone = 3;       // px: how well people click
 constexpr double kClickSigmaWithLines = 15;  // px: where lines are seen, clicks only keep the whole in place
-constexpr double kPaintSigmaMetres = 0.04;     // m: how well it was laid, and how level the ground is
+constexpr double kPaintSigmaMetres = 0.04;   // m: how well it was laid, and how level the ground is
 
 double solve(CameraNumbers& numbers, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
              const std::vector<LineSighting>& sightings, bool free_lens) {

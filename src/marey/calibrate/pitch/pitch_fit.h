@@ -26,7 +26,7 @@ namespace marey::calibrate::pitch {
 
 /// What decides one camera.
 struct PitchEvidence {
-  Camera initial;                      ///< lens brown
+  Camera initial;                     ///< lens brown
   std::vector<PitchPoint> points;     ///< in the world
   std::vector<LineSighting> painted;  ///< in order along each line
   std::vector<LineSighting> clicked;

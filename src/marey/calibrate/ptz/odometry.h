@@ -22,7 +22,7 @@ struct OdometryOptions {
   double quality = 0.001;   ///< of the strongest corner: weaker ones are not followed. Grass is weak beside a scoreboard's letters
   int width = 640;          ///< px: images are shrunk to about this
   double agree_px = 1.2;    ///< of the shrunk image: corners that fit better go with the camera
-  int min_corners = 24;    ///< corners that have to agree,
+  int min_corners = 24;     ///< corners that have to agree,
   double fraction = 0.25;   ///< and the share of those that could be followed
   int longest = 40;         ///< frames that one reference serves
   int graphics_reach = 12;  ///< shrunk px round a corner that may be of graphics, where no other is taken

@@ -45,7 +45,7 @@ struct TrackingOptions {
   int line_in_view = 15;           ///< samples: lines with fewer do not count;
   double lines_present = 0.5;      ///< of the lines in view: where no more than this fraction is there,
   int patience = 8;                ///< for this many frames in a row, the camera is lost
-  int search_interval = 5;           ///< frames between attempts to find it again
+  int search_interval = 5;         ///< frames between attempts to find it again
   double model_px = 0.4;           ///< px at 1280: what no such camera explains (a lens that breathes), in every frame,
   double model_zoom = 4e-4;        ///< and in its ln f
   double click_agrees = 4;         ///< deviations of a click: a frame half of whose clicks lie farther off contradicts them
@@ -55,7 +55,7 @@ struct TrackingOptions {
   double image_advantage = 1.2;    ///< and frames before one that was found from its image alone
   double prefers = 1.15;           ///< ratio of merits from which one of two groups of corners is used
   double image_over_clicks = 2;    ///< ratio of merits from which an image overrules its clicks, which are reported
-  int search_everywhere = 3;      ///< attempts to find it again of which one is not about the last heading alone
+  int search_everywhere = 3;       ///< attempts to find it again of which one is not about the last heading alone
   double kept_mb = 160;            ///< of images, for walking back
   std::size_t max_keyframes = 24;  ///< that the tripod is solved on
 };

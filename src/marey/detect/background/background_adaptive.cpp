@@ -51,7 +51,7 @@ namespace {
 constexpr int kLumaFloor = 8;    // levels: the narrowest band's half width
 constexpr int kChromaFloor = 6;  // levels
 constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
-constexpr int kPhases = 8;    // frames until each row was taught once
+constexpr int kPhases = 8;       // frames until each row was taught once
 constexpr int kRowsPerPhase = 16;
 constexpr int kPatchRotations = 4;     // frames between two searches for parts in another light, while none exist
 constexpr double kPatchMarks = 0.005;  // of the image: with fewer pixels outside the bands none exist

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kSameLuma = 10;            // levels, as the scene's first guess has it
 constexpr int kSameChroma = 8;           // levels
-constexpr std::size_t kMinSamples = 6;     // samples in which a thing that comes and goes can be distinguished from noise
+constexpr std::size_t kMinSamples = 6;   // samples in which a thing that comes and goes can be distinguished from noise
 constexpr double kMinFraction = 0.15;    // of the samples, in which what returns was seen
 constexpr double kInterrupted = 1.5;     // times as long as it was seen, from the first time to the last: one stay
 constexpr std::size_t kMaxSamples = 31;  // format: a bit for each in 32

@@ -264,7 +264,7 @@ constexpr float kFlat = 4.5f;  // blurs from the edge beyond which it is not fel
 struct Detected {
   Floats away_x, away_y, distance;  ///< px, from the disc's centre or the nearest of its segment
   Floats u;                         ///< blurs outside its edge
-  Floats along;                    ///< along the sweep: −1 at one end, 1 at the other
+  Floats along;                     ///< along the sweep: −1 at one end, 1 at the other
   Edge edge;
 };
 

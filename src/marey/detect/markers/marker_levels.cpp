@@ -17,17 +17,17 @@ namespace marey::detect::markers {
 namespace {
 
 constexpr int kTile = MarkerThresholds::kTile;
-constexpr int kGrid = 8;             // samples per tile, in each direction
-constexpr int kFraction = 32;        // frames in which every tile is measured once
-constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kMinCompressed = 0.03;   // of white; of what was compressed or rounded to 8 bits
-constexpr double kMinRaw = 0.01;     // of an image of more bits
-constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
-constexpr double kForget = 0.97;     // of the contrast is left after a frame without a marker
-constexpr double kUneven = 0.5;      // of what a marker must stand out by: a step in the ground that matters
-constexpr double kUnevenNoise = 5;   // noises: of noise alone seven tenths lie within 2.1
-constexpr double kOfTop = 0.6;       // of their own level: one before something bright stands out by less
-constexpr int kMaxChange = 1023;     // format: of a histogram, in levels of 8 bits or quarters of them
+constexpr int kGrid = 8;                 // samples per tile, in each direction
+constexpr int kFraction = 32;            // frames in which every tile is measured once
+constexpr double kSigmas = 6;            // a million pixels of pure noise: one false pixel in a thousand frames
+constexpr double kMinCompressed = 0.03;  // of white; of what was compressed or rounded to 8 bits
+constexpr double kMinRaw = 0.01;         // of an image of more bits
+constexpr double kOfContrast = 0.3;      // of the bright ones': a dim edge of something else is no marker
+constexpr double kForget = 0.97;         // of the contrast is left after a frame without a marker
+constexpr double kUneven = 0.5;          // of what a marker must stand out by: a step in the ground that matters
+constexpr double kUnevenNoise = 5;       // noises: of noise alone seven tenths lie within 2.1
+constexpr double kOfTop = 0.6;           // of their own level: one before something bright stands out by less
+constexpr int kMaxChange = 1023;         // format: of a histogram, in levels of 8 bits or quarters of them
 
 double value_at(const cv::Mat& image, int x, int y) {
   return image.depth() == CV_8U ? image.ptr<std::uint8_t>(y)[x] : image.ptr<std::uint16_t>(y)[x];

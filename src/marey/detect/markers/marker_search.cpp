@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 1 << 18;
 constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
-constexpr int kMaxPasses = 4;          // at one image
+constexpr int kMaxPasses = 4;              // at one image
 constexpr int kClutterKept = 64;           // frames, before it is asked again whether it is still there
 constexpr double kOfDemand = 0.85;         // a blob over what is round it, in the contrast that its pixels had to have
 constexpr double kNewContrast = 1.5;       // times the known contrast: markers are brighter than was thought

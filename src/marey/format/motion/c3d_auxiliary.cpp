@@ -11,8 +11,8 @@ namespace marey::format::motion {
 AuxiliaryData auxiliary_data(const C3dHead& head, const C3dLayout& layout, const std::string& path) {
   const double events = head.number("EVENT:USED").value_or(0);
   AuxiliaryData auxiliary{.path = path,
-                        .channels = static_cast<std::int64_t>(layout.analog_channels),
-                        .events = std::isfinite(events) && events > 0 && events < 1e6 ? static_cast<std::int64_t>(events) : 0};
+                          .channels = static_cast<std::int64_t>(layout.analog_channels),
+                          .events = std::isfinite(events) && events > 0 && events < 1e6 ? static_cast<std::int64_t>(events) : 0};
   return auxiliary;
 }
 
@@ -30,7 +30,8 @@ C3dAuxiliary::C3dAuxiliary(std::unique_ptr<MappedFile> file, std::span<const std
 C3dAuxiliary::C3dAuxiliary(std::span<const std::byte> bytes, const AuxiliaryData& auxiliary)
     : C3dAuxiliary(nullptr, bytes, auxiliary) {}
 
-C3dAuxiliary::C3dAuxiliary(const AuxiliaryData& auxiliary) : C3dAuxiliary(std::make_unique<MappedFile>(auxiliary.path), {}, auxiliary) {}
+C3dAuxiliary::C3dAuxiliary(const AuxiliaryData& auxiliary)
+    : C3dAuxiliary(std::make_unique<MappedFile>(auxiliary.path), {}, auxiliary) {}
 
 double C3dAuxiliary::rate_hz() const {
   const double rate = head_.number("POINT:RATE").value_or(0);

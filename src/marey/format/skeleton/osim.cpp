@@ -242,8 +242,8 @@ class OsimModel {
       const JointAxis axis{is_rotation, Vector<3>::Unit(letter - (is_rotation ? 'x' : 'X')), {}, coordinates[i]};
       file_.skeleton.coordinates[static_cast<std::size_t>(coordinates[i])].is_rotation = is_rotation;
       // Shifts come before turns: they are along the parent's axes.
-      const auto before =
-          std::find_if(into.axes.begin(), into.axes.end(), [&](const JointAxis& other) { return !is_rotation && other.is_rotation; });
+      const auto before = std::find_if(into.axes.begin(), into.axes.end(),
+                                       [&](const JointAxis& other) { return !is_rotation && other.is_rotation; });
       into.axes.insert(before, axis);
     }
   }

@@ -25,7 +25,7 @@ struct GaitMarkers {
   double rate_hz = 0, begin_s = 0;
   std::int64_t first_index = 0;
   format::UpAxis up = format::UpAxis::z;                   ///< the axis of the file that was taken for up
-  format::AuxiliaryData auxiliary = {};                      ///< of a C3D file
+  format::AuxiliaryData auxiliary = {};                    ///< of a C3D file
   const gait::BodyMarkerSet* set = &gait::plug_in_gait();  ///< rows have what the model calls its labels
   std::vector<gait::MarkerPositions> rows;
   std::vector<std::string> warnings;

@@ -113,7 +113,7 @@ void prepare(marey::calibrate::ptz::PtzTracker& tracker, const corridor::Feed& f
 }
 
 marey::calibrate::ptz::PtzResult track_camera(corridor::Feed& feed, const PtzRun& run, const PtzRunOptions& options,
-                                             const Hooks& hooks) {
+                                              const Hooks& hooks) {
   marey::calibrate::ptz::PtzTracker tracker(run.clicked.tripod, feed.info().size, options.tracking);
   for (std::size_t i = 0; i < run.clicks.size(); ++i) {
     std::vector<marey::calibrate::ptz::ClickedPosition> locations = run.clicks[i].locations;

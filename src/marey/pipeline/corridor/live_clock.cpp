@@ -11,8 +11,8 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-constexpr std::size_t kKept = 16;  // frames of a camera that wait for their instants
-constexpr double kCorrection = 0.05;    // of what the moments are off the frames, each time
+constexpr std::size_t kKept = 16;     // frames of a camera that wait for their instants
+constexpr double kCorrection = 0.05;  // of what the moments are off the frames, each time
 
 double live_rate(const std::vector<Feed>& feeds) {
   double rate = 0;

@@ -84,7 +84,7 @@ class Owners {
   const GroundIdentities& found_;
   const Recording& recording_;
   std::map<TrackId, std::vector<int>> segments_;  // of each track, by time
-  std::map<int, int> successor_;                     // of segments, within paths
+  std::map<int, int> successor_;                  // of segments, within paths
   std::vector<std::vector<bool>> taken_;          // of each path, by instant
 };
 

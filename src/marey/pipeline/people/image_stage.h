@@ -28,7 +28,7 @@ struct ImagePeopleOptions {
   bool live = false;
   double delay = 0;            ///< s that a live run uses later frames before it reports an instant
   bool observed_only = false;  ///< rows of those not observed at that instant are omitted
-  std::string spill_path;         ///< outlines that wait for the second pass lie in a nameless file beside this path
+  std::string spill_path;      ///< outlines that wait for the second pass lie in a nameless file beside this path
   bool stabilise = false;      ///< the camera shakes: images are stabilised first, and results are in the pixels of its rest
   bool with_lines = false;     ///< keep their measurement lines too, for an overlay
 };

@@ -94,11 +94,11 @@ std::map<int, Trajectory> standing_in(const PeopleVideo& video) {
 double tracked(const Trajectory& person, const std::map<TrackId, Trajectory>& tracks) {
   std::size_t maximum = 0;
   for (const auto& [id, trajectory] : tracks) {
-    maximum = std::max(maximum,
-                       static_cast<std::size_t>(std::count_if(person.begin(), person.end(), [&, &track = trajectory](const auto& at) {
-                         const auto found = track.find(at.first);
-                         return found != track.end() && geometry::iou(found->second, at.second) > 0.5;
-                       })));
+    maximum = std::max(
+        maximum, static_cast<std::size_t>(std::count_if(person.begin(), person.end(), [&, &track = trajectory](const auto& at) {
+          const auto found = track.find(at.first);
+          return found != track.end() && geometry::iou(found->second, at.second) > 0.5;
+        })));
   }
   return static_cast<double>(maximum) / static_cast<double>(person.size());
 }

@@ -112,7 +112,8 @@ class TrueAngles {
     const std::vector<double> values = scene_.coordinates(frame.time_s, actor_);
     std::string row = fmt::format("{},{:.6f}", frame.index, frame.time_s);
     for (std::size_t c = 0; c < values.size(); ++c)
-      fmt::format_to(std::back_inserter(row), ",{:.6f}", values[c] * (body_.coordinates[c].is_rotation ? 180 / std::numbers::pi : 1));
+      fmt::format_to(std::back_inserter(row), ",{:.6f}",
+                     values[c] * (body_.coordinates[c].is_rotation ? 180 / std::numbers::pi : 1));
     file_.write(row + '\n');
   }
 

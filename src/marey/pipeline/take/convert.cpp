@@ -196,7 +196,8 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     throw format::WrongFormat("{}: --rig-names is for bones: .bvh and .glb", to);
   if (auto message_text = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*message_text));
   if (!options.analog.empty()) plan.info.auxiliary = analog_of(options.analog, from, to, out, plan, summary.warnings);
-  if (auto message_text = format::auxiliary_lost(plan.info.auxiliary, to, out)) summary.warnings.push_back(std::move(*message_text));
+  if (auto message_text = format::auxiliary_lost(plan.info.auxiliary, to, out))
+    summary.warnings.push_back(std::move(*message_text));
   const auto reader = opened(from, in, how, options.frames);
   const auto sink = options.rig_names.empty() ? format::create_recording(to, out, plan)
                                               : format::skeleton::create_bones(to, {.rig_names = options.rig_names});

@@ -55,6 +55,19 @@ void add_tracks_of(const Operation& operation, std::set<TrackId>& tracks) {
   for (const edit::FilledGap& gap : operation.gaps) tracks.insert(gap.track);
 }
 
+/// The operations of edits that count in only one of two states of a take.
+std::vector<Operation> operations_between(const EditHistory& before, const EditHistory& now) {
+  const auto [left, common] =
+      std::mismatch(before.counting.begin(), before.counting.end(), now.counting.begin(), now.counting.end());
+  std::set<std::int64_t> others(left, before.counting.end());
+  others.insert(common, now.counting.end());
+  std::vector<Operation> operations;
+  for (const DoneEdit& done : now.edits) {
+    if (done.operation && others.contains(done.edit.id)) operations.push_back(*done.operation);
+  }
+  return operations;
+}
+
 /// Where a remark begins: a `#` between blanks, or at the line's end, that stands in no quotes; the line's length where there is
 /// none.
 std::size_t end_before_remark(std::string_view line) {
@@ -156,15 +169,17 @@ void set_head(const std::string& path, std::int64_t id, const std::optional<Edit
 }
 
 std::vector<TrackId> tracks_between(const EditHistory& before, const EditHistory& now) {
-  const auto [left, common] =
-      std::mismatch(before.counting.begin(), before.counting.end(), now.counting.begin(), now.counting.end());
-  std::set<std::int64_t> others(left, before.counting.end());
-  others.insert(common, now.counting.end());
   std::set<TrackId> tracks;
-  for (const DoneEdit& done : now.edits) {
-    if (done.operation && others.contains(done.edit.id)) add_tracks_of(*done.operation, tracks);
-  }
+  for (const Operation& operation : operations_between(before, now)) add_tracks_of(operation, tracks);
   return {tracks.begin(), tracks.end()};
+}
+
+std::vector<BodyId> bodies_between(const EditHistory& before, const EditHistory& now) {
+  std::set<BodyId> bodies;
+  for (const Operation& operation : operations_between(before, now)) {
+    if (operation.body) bodies.insert(*operation.body);
+  }
+  return {bodies.begin(), bodies.end()};
 }
 
 std::vector<TrackColumns> edited_tracks(const std::string& path, const std::vector<TrackId>& tracks) {
@@ -175,6 +190,15 @@ std::vector<TrackColumns> edited_tracks(const std::string& path, const std::vect
   for (const TrackId track : tracks)
     columns.push_back(now.has(track) ? now.columns(track, dimensions)
                                      : TrackColumns({.id = track, .label = {}, .team = {}, .colour = {}}, dimensions));
+  return columns;
+}
+
+std::vector<BodyColumns> edited_bodies(const std::string& path, const std::vector<BodyId>& bodies) {
+  const Recording now = edit::edited(format::take::read_recording(path));
+  std::vector<BodyColumns> columns;
+  for (const BodyId body : bodies) {
+    if (const BodyColumns* poses = now.find(body)) columns.push_back(*poses);
+  }
   return columns;
 }
 

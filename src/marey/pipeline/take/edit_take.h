@@ -59,5 +59,9 @@ void set_head(const std::string& path, std::int64_t id, const std::optional<Edit
 std::vector<TrackId> tracks_between(const EditHistory& before, const EditHistory& now);
 /// These tracks as the edits that count have left them, in the same order; without rows where they have used one up.
 std::vector<TrackColumns> edited_tracks(const std::string& path, const std::vector<TrackId>& tracks);
+/// The bodies whose poses may be others, as `tracks_between`.
+std::vector<BodyId> bodies_between(const EditHistory& before, const EditHistory& now);
+/// The poses of these bodies after the edits that count. Reads the whole take.
+std::vector<BodyColumns> edited_bodies(const std::string& path, const std::vector<BodyId>& bodies);
 
 }  // namespace marey::pipeline::take

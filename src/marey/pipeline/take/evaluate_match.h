@@ -18,11 +18,11 @@ struct PathLengths {
 /// Tracks on the ground, or in space, against the truth.
 struct MatchEvaluation {
   evaluate::GroundEvaluation evaluation;
-  std::vector<PathLengths> path_lengths;      ///< of people with a track; none where the instants are too far apart to add up paths
-  std::optional<double> distance_error;  ///< differences of the lengths by amount, over the true lengths: a share
-  bool by_time = false;                  ///< instants were paired by time, not by frame number
-  bool has_speed = false;                ///< whether the speeds of both sides are known
-  std::vector<std::string> warnings;     ///< one sentence each
+  std::vector<PathLengths> path_lengths;  ///< of people with a track; none where the instants are too far apart to add up paths
+  std::optional<double> distance_error;   ///< differences of the lengths by amount, over the true lengths: a share
+  bool by_time = false;                   ///< instants were paired by time, not by frame number
+  bool has_speed = false;                 ///< whether the speeds of both sides are known
+  std::vector<std::string> warnings;      ///< one sentence each
 };
 
 /// Pairs the instants of both and evaluates the tracks. Instants go together by frame number where frames mean the same time in

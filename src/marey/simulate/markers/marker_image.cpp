@@ -143,7 +143,8 @@ void draw_wand(MarkerStage& stage, MarkerImage& drawn) {
   const double streak = random.chance(0.6) ? random.uniform(0, 3 * radius) : 0;
   for (int attempt = 0; attempt < 2000; ++attempt) {
     const double angle = random.uniform(0, 2 * std::numbers::pi), streak_angle = random.uniform(0, 2 * std::numbers::pi);
-    const Vector<2> along(std::cos(angle), std::sin(angle)), path = streak * Vector<2>(std::cos(streak_angle), std::sin(streak_angle));
+    const Vector<2> along(std::cos(angle), std::sin(angle)),
+        path = streak * Vector<2>(std::cos(streak_angle), std::sin(streak_angle));
     const Vector<2> middle = stage.location(20);
     std::vector<Vector<2>> locations{middle - 0.5 * span * along, middle + 0.2 * span * along, middle + 0.5 * span * along};
     if (random.chance(0.5)) {

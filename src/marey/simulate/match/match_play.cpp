@@ -25,14 +25,14 @@ constexpr std::array<Formation, 2> kFormations{
        {0.85, 0.25}}},
      {{{0.05, -0.8}, {0, -0.25}, {0, 0.25}, {0.05, 0.8}, {0.35, 0}, {0.5, -0.4}, {0.5, 0.4}, {0.9, -0.85}, {1, 0}, {0.9, 0.85}}}}};
 
-constexpr double kBallSpeed = 15;    // m/s, of a pass
-constexpr double kReach = 1.2;       // m; the ball is a player's within it
-constexpr double kWanderTime = 9;    // s
-constexpr double kWander = 2.4;      // m
-constexpr double kDuelDistance = 0.55;     // m between two who fight for the ball
-constexpr double kSprint = 9.5;      // m/s; as fast as possible
-constexpr double kOutOfPlay = 0.15;  // of all times that a player gives the ball away
-constexpr double kLost = 0.24;       // of all passes
+constexpr double kBallSpeed = 15;       // m/s, of a pass
+constexpr double kReach = 1.2;          // m; the ball is a player's within it
+constexpr double kWanderTime = 9;       // s
+constexpr double kWander = 2.4;         // m
+constexpr double kDuelDistance = 0.55;  // m between two who fight for the ball
+constexpr double kSprint = 9.5;         // m/s; as fast as possible
+constexpr double kOutOfPlay = 0.15;     // of all times that a player gives the ball away
+constexpr double kLost = 0.24;          // of all passes
 
 int side_of(int player) {
   return player / kMatchSide;

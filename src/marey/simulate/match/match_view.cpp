@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kColumns = 8, kRows = 16;  // of the raster of a box
 constexpr double kBodyFraction = 0.75;   // of the width of a box that its person fills: people see past each other's elbows
-constexpr double kMinHeight = 4;          // px; a box lower than this is not a person's
+constexpr double kMinHeight = 4;         // px; a box lower than this is not a person's
 
 struct Located {
   ObservedPerson detected;

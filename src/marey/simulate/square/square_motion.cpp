@@ -7,13 +7,13 @@
 namespace marey::simulate::square {
 namespace {
 
-constexpr double kStep = 0.04;       // s
-constexpr double kFilling = 40;      // s before the beginning
-constexpr double kArrived = 0.7;     // m from a goal
-constexpr double kHesitation = 0.6;  // s in which people take up the velocity they want
-constexpr double kMaxPush = 3;       // m/s²
-constexpr double kApart = 0.45;      // m between the middles of two who pass each other
-constexpr double kGroupSpacing = 0.55;     // m between those of a group
+constexpr double kStep = 0.04;          // s
+constexpr double kFilling = 40;         // s before the beginning
+constexpr double kArrived = 0.7;        // m from a goal
+constexpr double kHesitation = 0.6;     // s in which people take up the velocity they want
+constexpr double kMaxPush = 3;          // m/s²
+constexpr double kApart = 0.45;         // m between the middles of two who pass each other
+constexpr double kGroupSpacing = 0.55;  // m between those of a group
 
 }  // namespace
 

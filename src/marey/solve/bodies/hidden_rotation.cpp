@@ -9,7 +9,7 @@ namespace marey::solve::bodies {
 namespace {
 
 constexpr double kStep_s = 0.02;       // numerical: more instants a second say no more of an error over a tenth of one
-constexpr double kMaxErrors = 200;      // of errors; older ones are forgotten
+constexpr double kMaxErrors = 200;     // of errors; older ones are forgotten
 constexpr double kOwnPrior = 4;        // errors that the stated acceleration counts for
 constexpr double kCarriedCount = 40;   // errors before a body is held for one that carries
 constexpr double kMinVariance = 2e-4;  // rad², numerical: 0.8°, what poses themselves are off by

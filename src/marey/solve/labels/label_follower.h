@@ -34,7 +34,7 @@ struct LabelTrackerOptions {
   double min_fit = 6;          ///< nats, below which a name is not given
   double min_margin = 3;       ///< nats that a name must be better than what else could be, after many frames
   double first_margin = 4;     ///< times `min_margin` more is wanted at a track's first frame, half of it at the second, …
-  double max_lack = 2;      ///< nats a neighbour by which a name's distances are off, and from which on it is uncertain
+  double max_lack = 2;         ///< nats a neighbour by which a name's distances are off, and from which on it is uncertain
   double taken_after_s = 0.1;  ///< a name that is uncertain for this long, and does not fit, is taken away
 };
 

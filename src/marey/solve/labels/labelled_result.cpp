@@ -93,8 +93,8 @@ class Result {
     for (const int t : tracklets) {
       const auto found = candidates.find(chains_.chain_of(t));
       const NameCandidates named = found == candidates.end() ? NameCandidates{} : found->second;
-      labelled_.unnamed.push_back({id, tracklet(t).first, tracklet(t).last, word(named.best), word(named.next),
-                                   named.fit, named.margin});
+      labelled_.unnamed.push_back(
+          {id, tracklet(t).first, tracklet(t).last, word(named.best), word(named.next), named.fit, named.margin});
     }
     labelled_.recording.put(joined({.id = id, .label = {}, .team = {}}, tracklets));
   }

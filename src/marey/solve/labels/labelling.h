@@ -100,11 +100,11 @@ class Labelling {
   double scale_ = 1;
   std::optional<AnotherPerson> person_;
   bool scale_known_ = false;
-  double found_again_ = 0;                  // of the names, in other searches
-  std::vector<int> undecided_;              // by name: which other it could as well be
-  std::vector<int> search_again_;           // by name: which other those give
+  double found_again_ = 0;                    // of the names, in other searches
+  std::vector<int> undecided_;                // by name: which other it could as well be
+  std::vector<int> search_again_;             // by name: which other those give
   std::map<int, NameCandidates> candidates_;  // by chain without a name
-  std::vector<std::vector<int>> bearers_;   // by name, of the last round
+  std::vector<std::vector<int>> bearers_;     // by name, of the last round
 };
 
 }  // namespace marey::solve::labels

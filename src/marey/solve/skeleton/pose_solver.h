@@ -121,10 +121,10 @@ class PoseSolver {
   /// other direction, it lies nearly as before.
   struct Limb {
     std::size_t ball = 0;
-    int hinge = 0;             ///< coordinate
+    int hinge = 0;                ///< coordinate
     std::vector<int> joint_axes;  ///< coordinates of the hinge's joint besides
-    Vector<3> along;           ///< in the ball's frame
-    Matrix<3> rest;            ///< of the ball
+    Vector<3> along;              ///< in the ball's frame
+    Matrix<3> rest;               ///< of the ball
     double at_limit_s = 0;
     std::vector<bool> near;  ///< of each segment: its markers say something of this limb
     bool requested = false;

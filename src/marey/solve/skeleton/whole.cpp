@@ -82,7 +82,8 @@ class FoldSettler {
   }
 
   /// From a pose at frame `from` on, in one direction, until it meets the solution: appends rows and what they cost less.
-  void solve_onwards(std::vector<double> pose, std::size_t from, int direction, std::vector<std::vector<double>>& rows, double& gain) {
+  void solve_onwards(std::vector<double> pose, std::size_t from, int direction, std::vector<std::vector<double>>& rows,
+                     double& gain) {
     tracker_.start_from(std::move(pose));
     for (auto f = static_cast<std::ptrdiff_t>(from) + direction; f >= 0 && f < std::ssize(rows_); f += direction) {
       const auto at = static_cast<std::size_t>(f);

@@ -115,7 +115,7 @@ bool StandingScene::take_corners(const cv::Mat& from) {
 
 /// Where the corners that can be followed are seen; `within` is how many would be in the image.
 std::vector<TrackedPosition> StandingScene::track_corners(const Corners& corners, const std::vector<cv::Mat>& pyramid,
-                                                        const SceneMotion& start, int& within) const {
+                                                          const SceneMotion& start, int& within) const {
   const Matrix<3> to_picture = moved_from_rest(start, view_);
   const auto inside = [this](const cv::Point2f& at) {
     return at.x >= kBorder && at.y >= kBorder && at.x < size_.width - kBorder && at.y < size_.height - kBorder;

@@ -29,7 +29,7 @@ struct StandingSceneOptions {
   int corners = 240;              ///< at most
   double min_corner = 8;          ///< squared grey levels of gradient over a window of 7 px, along the direction where it is less
   double agree = 0.7;             ///< px from the scene's motion: the corner stands
-  int min_corners = 12;          ///< corners that agree, or the image is lost
+  int min_corners = 12;           ///< corners that agree, or the image is lost
   double fraction_of_all = 0.12;  ///< of all corners that agree, or it is lost
   double farthest = 0.3;          ///< of the image's width: what is moved further is lost
   double fraction = 0.3;          ///< of the corners within the image that agree, or it is lost
@@ -71,7 +71,7 @@ class StandingScene {
   cv::Mat shrunk(const Image& image) const;
   bool take_corners(const cv::Mat& from);
   std::vector<TrackedPosition> track_corners(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
-                                           int& within) const;
+                                             int& within) const;
   std::optional<SceneFit> fit(const std::vector<TrackedPosition>& locations, int within, std::size_t all) const;
   std::optional<SceneFit> find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid, const SceneMotion& start,
                                     std::vector<TrackedPosition>* locations = nullptr) const;
@@ -99,7 +99,7 @@ class StandingScene {
   std::vector<std::vector<TrackedPosition>> for_focal_;
   std::vector<Corners> corners_;  // the last few kinds of light; the first are from the beginning
   std::size_t used_ = 0;
-  SceneAppearance appearances_;      // of the beginning
+  SceneAppearance appearances_;        // of the beginning
   bool learned_from_several_ = false;  // from several images
   SceneMotion last_;
   Corners before_;        // of an image of late whose motion was known

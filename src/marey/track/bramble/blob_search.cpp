@@ -10,8 +10,8 @@
 namespace marey::track::bramble {
 namespace {
 
-constexpr double kCell = 0.5;         // m
-constexpr double kApart = 0.8;        // m
+constexpr double kCell = 0.5;              // m
+constexpr double kApart = 0.8;             // m
 constexpr std::size_t kMaxCandidates = 6;  // candidates at an instant
 constexpr std::size_t kMaxCells = 60'000;
 constexpr int kMinRows = 3;            // of the grid: a person seen smaller has no shape

@@ -9,12 +9,12 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr double kIndependent = 15;   // s, after which a place is new information
-constexpr double kPriorSpread = 9;  // m per axis, of one person's places
-constexpr double kSpreadKnown = 4;    // instants that this is worth
-constexpr double kMeanKnown = 0.1;    // likewise of the middle: a person may be anywhere on a pitch
-constexpr double kOtherTeam = 0.1;    // of instants at which a person is taken for one of the other team
-constexpr double kMaxTeam = 8;        // instants of a team's colour that count at most: a track's team was found for all of it
+constexpr double kIndependent = 15;  // s, after which a place is new information
+constexpr double kPriorSpread = 9;   // m per axis, of one person's places
+constexpr double kSpreadKnown = 4;   // instants that this is worth
+constexpr double kMeanKnown = 0.1;   // likewise of the middle: a person may be anywhere on a pitch
+constexpr double kOtherTeam = 0.1;   // of instants at which a person is taken for one of the other team
+constexpr double kMaxTeam = 8;       // instants of a team's colour that count at most: a track's team was found for all of it
 
 /// Logarithm of the multivariate gamma function in two dimensions, but for a constant.
 double log_gamma_2(double x) {

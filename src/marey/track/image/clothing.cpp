@@ -15,8 +15,8 @@ constexpr double kBetweenLightness = 350, kBetweenColour = 50;
 constexpr double kPriorCount = 6;
 constexpr std::size_t kMinObservedCount = 8;  // instants of a tracklet that is learned from
 constexpr double kTrusted = 0.6;              // of the ratio, since parts and components are not independent
-constexpr double kMaxGain = 4;               // that clothes alike say for one person: others may wear the same
-constexpr double kMinGain = -10;             // and clothes that differ against it: light changes more than was learned
+constexpr double kMaxGain = 4;                // that clothes alike say for one person: others may wear the same
+constexpr double kMinGain = -10;              // and clothes that differ against it: light changes more than was learned
 constexpr double kAlike = 4;                  // neighbouring instants share light and pose: this many count as one
 
 double squared(double x) {

@@ -31,7 +31,8 @@ class Clutter {
 
  private:
   static constexpr double kCrowded = 0.67;  // boxes in a height squared: a street that people fill (TUD)
-  static constexpr double kFraction = 0.3;  // of the log-likelihood ratio: a detection near a person is rarely a new one (bench/tuning.md)
+  static constexpr double kFraction =
+      0.3;  // of the log-likelihood ratio: a detection near a person is rarely a new one (bench/tuning.md)
 
   std::int64_t frames_ = 0;
   double covered_ = 0;                                                           // px²: heights squared, of all boxes

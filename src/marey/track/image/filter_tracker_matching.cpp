@@ -16,7 +16,7 @@ constexpr double kRecently = 0.35;        // s; a target seen since shows the ca
 constexpr double kCrowdedSizeLimit = 9;   // a box whose size is not trusted costs no more than this
 constexpr double kStart = 1.0 / 9;        // of the highest speed: standard deviation of that of a target that was seen once
 constexpr double kMaxSpread = 4;          // what the uncertainty of a target that was just seen costs, at most
-constexpr double kReferenceStep = 0.2;      // s; what fades while a target is not seen was chosen on steps up to this
+constexpr double kReferenceStep = 0.2;    // s; what fades while a target is not seen was chosen on steps up to this
 constexpr double kOverlap = 0.25;         // IoU of a target's box and what must be the target, there being no other
 
 }  // namespace
@@ -61,8 +61,8 @@ bool FilterTracker::was_observed_recently(const Target& target) const {
   return seconds(*now_ - target.last_observed) < std::max(kRecently, kNextFrame * dt_);
 }
 
-/// The part of its unseen time that counts against a target: where frames are far apart, nothing could have been observed between them
-/// them.
+/// The part of its unseen time that counts against a target: where frames are far apart, nothing could have been observed between
+/// them them.
 double FilterTracker::missed_for(const Target& target) const {
   return seconds(*now_ - target.last_observed) - std::max(0.0, dt_ - kReferenceStep);
 }

@@ -201,7 +201,7 @@ class AmbiguityFinder {
   std::vector<std::vector<double>> nearest_;  ///< of each row: by how much another overlaps it, at most
   std::vector<Contact> contacts_;
   std::vector<AmbiguousInterval> intervals_;  ///< of all tracklets, one after another
-  std::vector<int> first_interval_;      ///< of each tracklet
+  std::vector<int> first_interval_;           ///< of each tracklet
   std::vector<std::vector<int>> interval_of_row_;
   assign::DisjointSets encounters_;  ///< of doubts
 };

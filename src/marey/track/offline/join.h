@@ -19,7 +19,7 @@ struct JoinOptions {
   double speed_noise = 0.35;     ///< by how much the mean speed in a gap differs from that at its ends, 1/s
   double size_noise = 0.15;      ///< of the logarithm of the height
   double shortest = 0.35;        ///< s; a tracklet seen for less is taken for a false alarm
-  int min_detections = 3;          ///< observations; likewise
+  int min_detections = 3;        ///< observations; likewise
   double rarest = 0.35;          ///< share of its frames; one seen in fewer likewise
   double weaker = 0.15;          ///< what scores this much below the typical must last longer and be seen more often
   /// The image, px. One that ends at its border has left, one that begins there has come: they are joined on strong evidence alone.

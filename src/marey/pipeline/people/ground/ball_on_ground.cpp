@@ -78,7 +78,8 @@ std::optional<TrackId> track_ball(std::vector<BallObservations> time_steps, cons
     where.pitch = [&](const Vector<2>& location) { return area.holds(location, kOnLines - area.margin()); };
   }
   const auto stop = [&] { return hooks.stop.stop_requested(); };
-  const std::vector<std::optional<BallState>> states = track::ball::ball_trajectory(time_steps, views, where, options.trajectory, stop);
+  const std::vector<std::optional<BallState>> states =
+      track::ball::ball_trajectory(time_steps, views, where, options.trajectory, stop);
   const int last_id = recording.tracks().empty() ? 0 : number(recording.tracks().back().id());
   TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}, .kind = TrackKind::ball}, 3);
   std::size_t instant = 0;

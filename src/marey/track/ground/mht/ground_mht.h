@@ -7,9 +7,9 @@ namespace marey::track::ground::mht {
 
 /// What multiple-hypothesis tracking keeps beyond GroundTrackerOptions.
 struct GroundMhtLimits {
-  double ratio = 1e-4;      ///< a hypothesis less likely than the best of its cluster by more than this factor is dropped
-  int leaves = 2000;        ///< of all hypotheses of a cluster, counted once for each: a large cluster keeps fewer hypotheses
-  bool fold = true;         ///< make one of hypotheses that have come to the same
+  double ratio = 1e-4;          ///< a hypothesis less likely than the best of its cluster by more than this factor is dropped
+  int leaves = 2000;            ///< of all hypotheses of a cluster, counted once for each: a large cluster keeps fewer hypotheses
+  bool fold = true;             ///< make one of hypotheses that have come to the same
   bool distrust_shared = true;  ///< trust less of an observation that may be of two who touch
 };
 

@@ -29,7 +29,7 @@ constexpr double thinned = 0.6;     // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be another person's
 constexpr std::size_t kMaxKinds = 300;
 
-constexpr int kIterations = 5;    // of learning who left, and where people leave
+constexpr int kIterations = 5;   // of learning who left, and where people leave
 constexpr double kMinOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are omitted
 constexpr double kBounds = 1.5;  // s
 
@@ -273,7 +273,7 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
 }
 
 std::vector<int> best_links(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
-                             const GroundChainOptions& options) {
+                            const GroundChainOptions& options) {
   return assign::best_successors(static_cast<int>(tails.size()), gated_pairs(tails, heads, colours, options, 0));
 }
 

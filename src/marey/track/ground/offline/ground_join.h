@@ -88,7 +88,7 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
 
 /// For each end the beginning that follows it, or assign::kNoIndex. `tails[i]` and `heads[i]` belong to one tracklet.
 std::vector<int> best_links(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
-                             const GroundChainOptions& options);
+                            const GroundChainOptions& options);
 
 /// Tracklets that are one person's.
 struct GroundChain {

@@ -18,7 +18,8 @@ constexpr double kMinTaken = 0.1;        // what a move must gain
 
 }  // namespace
 
-GroundPaths::GroundPaths(const SegmentGraph& graph) : graph_(graph), next_(graph.successors), swapped_(graph.crossings.size(), false) {
+GroundPaths::GroundPaths(const SegmentGraph& graph)
+    : graph_(graph), next_(graph.successors), swapped_(graph.crossings.size(), false) {
   const int nodes = static_cast<int>(graph.nodes.size());
   std::vector<assign::GatedPair> pairs;
   for (const SegmentGraph::Gap& gap : graph.gaps) pairs.push_back({gap.before, gap.after, gap.gain});

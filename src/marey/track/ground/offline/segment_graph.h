@@ -39,7 +39,7 @@ struct SegmentGraph {
   std::vector<Crossing> crossings;
   std::vector<Gap> gaps;
   std::map<std::array<int, 2>, double> gain_of_gap;  ///< by its nodes
-  std::vector<int> successors;                           ///< of each node the next one of its tracklet, or assign::kNoIndex
+  std::vector<int> successors;                       ///< of each node the next one of its tracklet, or assign::kNoIndex
 };
 
 SegmentGraph graph_of_segments(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
