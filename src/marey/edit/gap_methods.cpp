@@ -161,7 +161,7 @@ std::vector<std::size_t> frames_to_learn_from(const Locations& locations, std::s
     const auto known = [&](std::size_t one) { return locations.markers[one].known[frame] != 0; };
     if (!in(hole) && !in(hidden) && known(marker) && std::all_of(donors.begin(), donors.end(), known)) frames.push_back(frame);
   }
-  constexpr std::size_t kMaxCount = 600;
+  constexpr std::size_t kMaxCount = 600;  // numerical: more frames only cost time
   if (frames.size() <= kMaxCount) return frames;
   std::vector<std::size_t> fewer;
   for (std::size_t i = 0; i < kMaxCount; ++i) fewer.push_back(frames[i * frames.size() / kMaxCount]);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kReach_s = 0.5;        // of the parabola, to both sides
 constexpr double kNear_s = 0.25;        // something must have been seen so near on both sides
-constexpr std::size_t kMinSamples = 4;  // samples that make a parabola
+constexpr std::size_t kMinSamples = 4;  // numerical: a parabola has three unknowns
 constexpr double kIndependent = 2;      // errors of a second's samples hang together: they are worth this many
 
 /// The parabola through `samples` about `time_s`; nothing if they do not hold it.

@@ -29,7 +29,7 @@ class SceneSamples {
   std::span<const cv::Mat> cr() const { return cr_; }
 
  private:
-  static constexpr std::size_t kMaxCount = 16;
+  static constexpr std::size_t kMaxCount = 16;  // numerical: more only cost memory
   static constexpr int kTimes = 6;
   static constexpr double kFirstInterval_s = 0.1;
 

@@ -23,7 +23,7 @@ constexpr float kShadowChroma = 0.8F;     // of chroma's distance from grey
 constexpr float kShadowDeviation = 0.12F;
 constexpr double kUnknownFraction = 0.1;     // of the foreground, that looks like nothing seen before
 constexpr std::size_t kMinResponses = 200;   // responses that a foreground can be learned from
-constexpr std::size_t kMaxResponses = 6000;  // of those that are given
+constexpr std::size_t kMaxResponses = 6000;  // of those that are given; numerical: more only cost time
 constexpr int kRounds = 12;
 
 struct Middle {

@@ -10,7 +10,7 @@ namespace {
 constexpr int kReach = 3;          // cells to each side: 7 × 7
 constexpr double kSureMap = 0.5;   // the window's peak from which on the map moves the place
 constexpr double kOfPeak = 0.25;   // what is less is not an evidence
-constexpr double kMinSigma = 0.5;  // px; a deviation that no map of these cells can undercut
+constexpr double kMinSigma = 0.5;  // px; by definition: no map of these cells is more exact
 
 double likelihood(double logit) {
   return 1 / (1 + std::exp(-logit));

@@ -64,7 +64,7 @@ double level_at(const DiscsModel& model, double x, double y) {
   return p[kDiscsBackground] + p[kDiscsContrast] * (model.adds ? std::min(sum, maximum) : 1 - outside);
 }
 
-/// All sums by differences, the slow way.
+/// All sums by differences: the brute-force reference.
 DiscsNormal by_differences(const DiscsModel& model, const MarkerWindow& window, const std::vector<float>& value) {
   const Eigen::Index n = model.p.size();
   DiscsNormal normal{DiscsInformation::Zero(n, n), DiscsParameters::Zero(n)};

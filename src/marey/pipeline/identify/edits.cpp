@@ -11,7 +11,7 @@ namespace {
 
 using track::ground::offline::GroundIdentities;
 
-constexpr int kNoPath = -1;
+constexpr int kNoPath = -1;  // by definition
 
 /// Whose each row of a track is.
 struct OwnedRows {

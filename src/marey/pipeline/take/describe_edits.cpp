@@ -31,7 +31,7 @@ class NamesThen {
     return found == names_.end() || found->second.empty() ? fmt::format("#{}", number(track)) : found->second;
   }
   std::string of(const std::vector<TrackId>& tracks) const {
-    constexpr std::size_t kMaxCount = 6;
+    constexpr std::size_t kMaxCount = 6;  // format: a sentence stays short
     std::vector<std::string> names;
     for (std::size_t i = 0; i < std::min(tracks.size(), kMaxCount); ++i) names.push_back(of(tracks[i]));
     return fmt::format("{}{}", fmt::join(names, ", "),

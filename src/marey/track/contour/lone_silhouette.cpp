@@ -22,7 +22,7 @@ namespace {
 constexpr double kMaxUnlike = 1.35;       // factor of a silhouette's size over the typical, from which on it is not trusted
 constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kHalo = 5;               // px: physical, sharpening's halo at both ends of a silhouette
-constexpr double kMargin = 0.2;           // heights about a silhouette that are inspected
+constexpr double kSurround = 0.2;         // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
 constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
@@ -76,7 +76,7 @@ LoneSilhouettes::Inspected LoneSilhouettes::inspected(const Detection& detected,
   Box about = bounds(detected.outline);
   if (known) about = geometry::hull(about, target->predicted.box());
   colour::ColourPatch patch =
-      colour::cut_patch(image_, mask_, colour::grown(about, 2 + kMargin * height), colour::cell_step(height), scene_);
+      colour::cut_patch(image_, mask_, colour::grown(about, 2 + kSurround * height), colour::cell_step(height), scene_);
   if (patch.colour.empty()) return {fit_silhouette(detected, image_.luma(), options)};
   cv::Mat fraction = known ? known_fraction(patch, *target, detected, mask)
                            : colour::body_fraction(patch, colour::cells_within(detected.outline, patch), height);

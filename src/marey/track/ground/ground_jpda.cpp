@@ -79,7 +79,7 @@ class GroundJpda final : public GroundTrackerBase {
     }
   }
 
-  static constexpr double kMinProbability = 1e-6;  // less probable observations change nothing
+  static constexpr double kMinProbability = 1e-6;  // numerical: less probable observations change nothing
   static constexpr double kMinMatch = 0.2;         // of the targets it may be of, the most probable must be this much
 
   std::vector<assign::GatedPair> gains_;

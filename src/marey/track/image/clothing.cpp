@@ -15,8 +15,8 @@ constexpr double kBetweenLightness = 350, kBetweenColour = 50;
 constexpr double kPriorCount = 6;
 constexpr std::size_t kMinObservedCount = 8;  // instants of a tracklet that is learned from
 constexpr double kTrusted = 0.6;              // of the ratio, since parts and components are not independent
-constexpr double kMaxGain = 4;                // that clothes alike say for one person: others may wear the same
-constexpr double kMinGain = -10;              // and clothes that differ against it: light changes more than was learned
+constexpr double kMaxClothesGain = 4;         // that clothes alike say for one person: others may wear the same
+constexpr double kMinClothesGain = -10;       // and clothes that differ against it: light changes more than was learned
 constexpr double kAlike = 4;                  // neighbouring instants share light and pose: this many count as one
 
 double squared(double x) {
@@ -122,7 +122,7 @@ double ClothesLikelihood::log_ratio(const std::optional<Appearance>& a, const st
 }
 
 double ClothesLikelihood::log_ratio(const Clothes& a, const Clothes& b) const {
-  return std::clamp(kTrusted * (log_ratio(a.upper, b.upper) + log_ratio(a.lower, b.lower)), kMinGain, kMaxGain);
+  return std::clamp(kTrusted * (log_ratio(a.upper, b.upper) + log_ratio(a.lower, b.lower)), kMinClothesGain, kMaxClothesGain);
 }
 
 }  // namespace marey::track::image

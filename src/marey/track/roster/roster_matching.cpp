@@ -10,7 +10,7 @@ constexpr double kRoom = 24;      // twice the log-likelihood that a pair may co
 constexpr double kMaxGate = 5;    // standard deviations
 constexpr double kComesBack = 5;  // log-likelihood ratio against clutter from which a point brings a target back
 // The same of one that was just seen: a corner is likelier than that it is hidden now.
-constexpr double kMissPenalty = 14;
+constexpr double kVisiblePrior = 14;
 constexpr std::size_t kFewPairs = 4096;  // below this, every pair is weighed
 constexpr double kLogTwoPi = 1.8378770664093453;
 
@@ -96,7 +96,7 @@ double RosterMatching<D>::gain(const Target& target, const Observation<D>& point
     if (likelihood.cluttered() && likelihood.log_return(log_likelihood) < kComesBack) return 0;
   }
   if (likelihood.cluttered()) {  // against a false point here and, where the target is known to be there, none of its own
-    return 2 * (likelihood.log_return(log_likelihood) + (target.standing == Target::Standing::established ? kMissPenalty : 0));
+    return 2 * (likelihood.log_return(log_likelihood) + (target.standing == Target::Standing::established ? kVisiblePrior : 0));
   }
   const double cost = -2 * log_likelihood - D * kLogTwoPi - 2 * std::log(square_of(options_.marker_width));
   return std::max(1e-3, kRoom - cost) + (target.on_roster() ? kRoom : 0);

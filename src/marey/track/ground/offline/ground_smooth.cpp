@@ -11,7 +11,7 @@ namespace marey::track::ground::offline {
 namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
-constexpr int kPasses = 3;
+constexpr int kPasses = 3;             // numerical: iterations of the weights
 constexpr double push_memory = 0.5;    // s before and after within which the strength of pushes is measured
 constexpr double strongest = 3;        // in units of the pushes' typical power
 constexpr double shared_memory = 0.5;  // s for which errors persist of who is seen in one region with others
