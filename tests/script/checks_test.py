@@ -1,4 +1,4 @@
-"""That script/check-names, script/check-layers and script/check-words catch what they are for: each fault is planted in a small house of its own.
+"""That script/check-names, script/check-layers and script/check-words catch what they are for: each fault is planted in a small separate tree.
 
 Usage: checks_test.py PROJECT [unittest options].
 """
@@ -15,7 +15,7 @@ PROJECT = pathlib.Path()
 
 class Checks(unittest.TestCase):
     def setUp(self):
-        self.root = pathlib.Path(tempfile.mkdtemp(prefix="marey_house_"))
+        self.root = pathlib.Path(tempfile.mkdtemp(prefix="marey_tree_"))
         self.addCleanup(shutil.rmtree, self.root)
         self.plant("src/marey/core/ids.h", "namespace marey {\nenum class TrackId : int {};\nnamespace {\nint local() { return 1; }\n}\n}\n")
         self.plant("src/marey/track/tracker.h", '#include "marey/core/ids.h"\nnamespace marey::track {\nclass Tracker { int step(); };\nint join(int);\n}\n')
@@ -34,21 +34,21 @@ class Checks(unittest.TestCase):
         for word in words:
             self.assertIn(word, done.stdout)
 
-    def test_a_house_in_order_passes(self):
+    def test_a_tree_in_order_passes(self):
         self.check("check-names", 0)
         self.check("check-layers", 0)
 
-    def test_a_class_that_two_rooms_define_in_one_namespace(self):
+    def test_a_class_that_two_folders_define_in_one_namespace(self):
         self.plant("src/marey/detect/tracker.h", "namespace marey::track {\nstruct Tracker {};\n}\n")
         self.check("check-names", 1, "marey::track::Tracker is defined in", "its folder is marey::detect")
 
-    def test_a_class_that_two_sources_of_one_room_define(self):
+    def test_a_class_that_two_sources_of_one_folder_define(self):
         self.plant("src/marey/track/other.cpp", "namespace marey::track {\nstruct Tracker { double x; };\n}\n")
         self.check("check-names", 1, "marey::track::Tracker is defined in")
 
-    def test_a_free_function_in_headers_of_two_rooms(self):
+    def test_a_free_function_in_headers_of_two_folders(self):
         self.plant("src/marey/detect/join.h", "namespace marey::track {\nint join(double);\n}\n")
-        self.check("check-names", 1, "marey::track::join() stands in headers of two folders")
+        self.check("check-names", 1, "marey::track::join() is in headers of two folders")
 
     def test_pipelines_subfolders_have_an_order(self):
         self.plant("src/marey/pipeline/live/live.h", '#include "marey/pipeline/corridor/feed.h"\n')
@@ -78,7 +78,7 @@ class Checks(unittest.TestCase):
         self.plant("src/marey/detect/blob.h", "namespace marey {\nstruct Blob {};\n}\n")
         self.check("check-names", 1, "Blob is defined in marey; its folder is marey::detect")
 
-    def test_an_inner_room_in_its_parents_namespace_and_the_other_trajectory_round(self):
+    def test_a_subfolder_in_its_parents_namespace_and_the_reverse(self):
         self.plant("src/marey/track/ground/a.h", "namespace marey::track {\nstruct InnerAsOuter {};\n}\n")
         self.plant("src/marey/track/b.h", "namespace marey::track {\nnamespace ground {\nstruct OuterAsInner {};\n}\n}\n")
         self.check("check-names", 1, "InnerAsOuter is defined in marey::track;", "OuterAsInner is defined in marey::track::ground;")
@@ -88,18 +88,18 @@ class Checks(unittest.TestCase):
         self.plant("src/marey/detect/kernel.inl", "namespace marey {\nstruct Kernel {};\n}\n")
         self.check("check-names", 1, "Blob is defined in the global namespace", "Kernel is defined in marey;")
 
-    def test_a_program_that_adds_to_a_room(self):
+    def test_a_program_that_adds_to_a_folder(self):
         self.plant("apps/cli/more.cpp", "namespace marey::track {\nstruct More {};\n}\n")
-        self.check("check-names", 1, "More is defined in marey::track, which is a room of the library")
+        self.check("check-names", 1, "More is defined in marey::track, which is a folder of the library")
 
-    def test_an_include_up_the_house_of_each_kind(self):
+    def test_an_upward_include_of_each_kind(self):
         for file in ("a.h", "a.cpp", "a.inl", "a.inc", "inner/a.h"):
             with self.subTest(file=file):
                 self.plant(f"src/marey/detect/{file}", '#include "marey/track/tracker.h"\n')
                 self.check("check-layers", 1, f"src/marey/detect/{file}: detect may not include track")
                 (self.root / "src/marey/detect" / file).unlink()
 
-    def test_an_include_of_an_inner_room_of_another_step(self):
+    def test_an_include_of_a_subfolder_of_another_step(self):
         self.plant("src/marey/detect/a.h", '#include "marey/track/ground/mht.h"\n')
         self.check("check-layers", 1, "detect may not include track")
 
@@ -107,10 +107,10 @@ class Checks(unittest.TestCase):
         self.plant("src/marey/pipeline/a.h", '#include "experiments/trackers.h"\n')
         self.check("check-layers", 1, 'the library may not include "experiments/trackers.h"')
 
-    def test_an_include_of_what_is_not_there_and_an_unknown_room(self):
+    def test_an_include_of_what_is_not_there_and_an_unknown_folder(self):
         self.plant("experiments/a.cpp", '#include "marey/track/gone.h"\n')
         self.plant("src/marey/attic/a.h", "")
-        self.check("check-layers", 1, '"marey/track/gone.h" is not there', "attic is not a room")
+        self.check("check-layers", 1, '"marey/track/gone.h" is not there', "attic is not a folder")
 
     def count_words(self, *rules):
         self.plant("script/words.txt", "\n".join(["allow  prose  look-up", *rules]) + "\n")
