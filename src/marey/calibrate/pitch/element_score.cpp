@@ -20,10 +20,10 @@ Vector<2> leaving(const Vector<2>& in, const Vector<2>& out, cv::Size size) {
   const Vector<2> direction = out - in, last(size.width - 1, size.height - 1);
   double t = 1;
   for (int axis = 0; axis < 2; ++axis) {
-    if (method(axis) > 0) t = std::min(t, std::max(0.0, last(axis) - in(axis)) / method(axis));
-    if (method(axis) < 0) t = std::min(t, in(axis) / -method(axis));
+    if (direction(axis) > 0) t = std::min(t, std::max(0.0, last(axis) - in(axis)) / direction(axis));
+    if (direction(axis) < 0) t = std::min(t, in(axis) / -direction(axis));
   }
-  return in + t * method;
+  return in + t * direction;
 }
 
 Polyline projected(const geometry::Camera& camera, const geometry::PitchElement& element) {
@@ -50,8 +50,8 @@ double distance(const Vector<2>& point, const Polyline& line) {
   double nearest = (point - line[0]).norm();
   for (std::size_t i = 1; i < line.size(); ++i) {
     const Vector<2> segment = line[i] - line[i - 1];
-    const double t = method.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(method) / method.squaredNorm(), 0.0, 1.0) : 0;
-    nearest = std::min(nearest, (point - line[i - 1] - t * method).norm());
+    const double t = segment.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(segment) / segment.squaredNorm(), 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (point - line[i - 1] - t * segment).norm());
   }
   return nearest;
 }
