@@ -16,7 +16,7 @@ constexpr int kManyInOne = 6;              // boxes in one region
 constexpr double kOften = 0.05;            // of the frames
 constexpr double kMajorityFraction = 0.5;  // of the image, at once
 constexpr double kMinForeground = 0.0005;  // of the image, in which nothing is reported
-constexpr std::size_t kMinKeptFraction = 10;       // frames
+constexpr std::size_t kMinKept = 10;       // frames
 constexpr double kMinKeptFraction = 0.1;           // share of the foreground: a walker keeps half of it at 5 images a second
 
 }  // namespace
@@ -63,7 +63,7 @@ std::vector<std::string> ImageAmbiguities::warnings() const {
         "up to {} boxes share one region of what moves (in {:.0f} % of the frames six or more do): a crowd that only the size of a "
         "person divides, or one person near the camera, a vehicle or light that was taken for one",
         max_in_one_, percent(crowded_)));
-  if (kept_.size() >= kMinKeptFraction) {
+  if (kept_.size() >= kMinKept) {
     std::vector<float> kept = kept_;
     const auto middle = geometry::median(kept);
     if (middle < kMinKeptFraction)
