@@ -94,7 +94,7 @@ struct FileInfo {
   std::optional<std::int64_t> head;         ///< of the edits
   std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing if only reading would reveal it
   std::optional<UpAxis> up;                 ///< what the file itself says of its world, where it says anything
-  AuxiliaryData auxiliary = {};            ///< of a C3D file
+  AuxiliaryData auxiliary = {};             ///< of a C3D file
 };
 
 /// A file that is read instant by instant. Units and axes are Marey's.

@@ -50,7 +50,8 @@ double distance(const Vector<2>& point, const Polyline& line) {
   double nearest = (point - line[0]).norm();
   for (std::size_t i = 1; i < line.size(); ++i) {
     const Vector<2> segment = line[i] - line[i - 1];
-    const double t = segment.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(segment) / segment.squaredNorm(), 0.0, 1.0) : 0;
+    const double t =
+        segment.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(segment) / segment.squaredNorm(), 0.0, 1.0) : 0;
     nearest = std::min(nearest, (point - line[i - 1] - t * segment).norm());
   }
   return nearest;

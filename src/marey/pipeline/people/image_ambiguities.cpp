@@ -17,7 +17,7 @@ constexpr double kOften = 0.05;            // of the frames
 constexpr double kMajorityFraction = 0.5;  // of the image, at once
 constexpr double kMinForeground = 0.0005;  // of the image, in which nothing is reported
 constexpr std::size_t kMinKept = 10;       // frames
-constexpr double kMinKeptFraction = 0.1;           // share of the foreground: a walker keeps half of it at 5 images a second
+constexpr double kMinKeptFraction = 0.1;   // share of the foreground: a walker keeps half of it at 5 images a second
 
 }  // namespace
 
