@@ -8,7 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "marey/solve/bodies/body_follower.h"
+#include "marey/solve/bodies/body_tracker.h"
 #include "marey/solve/bodies/moving_bodies_test.h"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/files/source_name.h"
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 #include "marey/pipeline/jobs/augment.h"
 #include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 #include "marey/pipeline/calibrate/calibrate_ptz.h"
 
 #include "command_line.h"

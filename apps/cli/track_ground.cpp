@@ -9,7 +9,7 @@
 #include "marey/files/temporary_file.h"
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 #include "marey/pipeline/take/convert.h"
 
 #include "command_line.h"

@@ -20,7 +20,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 #include "marey/geometry/ground_view.h"
 #include "marey/pipeline/calibrate/calibrate_ptz.h"
 #include "marey/pipeline/people/ground/ptz_views.h"

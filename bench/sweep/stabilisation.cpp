@@ -29,7 +29,7 @@ namespace marey {
 namespace {
 
 using source::stabilise::PinholeView;
-using source::stabilise::StandingScene;
+using source::stabilise::ReferenceScene;
 
 struct SweepVideo {
   std::vector<Frame> frames;
@@ -72,7 +72,7 @@ Registered by_scene(const SweepVideo& video) {
   std::vector<Image> samples;
   const std::size_t step = std::max<std::size_t>(1, std::min<std::size_t>(300, video.frames.size()) / 30);
   for (std::size_t i = 0; i < video.frames.size() && samples.size() < 30; i += step) samples.push_back(video.frames[i].image);
-  StandingScene scene(video.frames.front().image.size(), std::nullopt);
+  ReferenceScene scene(video.frames.front().image.size(), std::nullopt);
   Registered found;
   if (!scene.learn(samples)) return Registered(video.frames.size());
   for (const Frame& frame : video.frames) {
@@ -163,7 +163,7 @@ void print_row(const SweepVideo& video, const std::string& name, const std::func
 
 /// The whole of it, for its cost alone: found, and brought to the rest.
 Registered stabilised(const SweepVideo& video) {
-  source::stabilise::Stabiliser steadier(StandingScene(video.frames.front().image.size(), std::nullopt),
+  source::stabilise::Stabiliser steadier(ReferenceScene(video.frames.front().image.size(), std::nullopt),
                                          std::make_shared<source::stabilise::StabilisationLog>());
   for (const Frame& frame : video.frames) steadier.stabilised(frame);
   return Registered(video.frames.size());

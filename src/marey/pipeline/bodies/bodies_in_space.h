@@ -8,7 +8,7 @@
 
 #include "marey/core/hooks.h"
 #include "marey/core/recording.h"
-#include "marey/solve/bodies/body_follower.h"
+#include "marey/solve/bodies/body_tracker.h"
 #include "marey/solve/bodies/define_body.h"
 
 namespace marey::pipeline::bodies {

@@ -46,7 +46,7 @@ bool can_be_read_twice(const std::string& path) {
 }  // namespace
 
 struct StabilisedCamera::Shared {
-  std::optional<source::stabilise::StandingScene> scene;
+  std::optional<source::stabilise::ReferenceScene> scene;
   std::shared_ptr<source::stabilise::StabilisationLog> log = std::make_shared<source::stabilise::StabilisationLog>();
   std::mutex opening;
   bool opened = false;
@@ -69,7 +69,7 @@ StabilisedCamera::StabilisedCamera(const RigCamera& camera, const FeedOptions& o
                 stated_of(camera, fmt::format("{}: its images show nothing that stands, by which they could be stabilised; leave "
                                               "out --stabilise",
                                               camera.source)));
-  source::stabilise::StandingScene trial = *shared_->scene;
+  source::stabilise::ReferenceScene trial = *shared_->scene;
   shared_->images = images.size();
   shared_->found = static_cast<std::size_t>(
       std::count_if(images.begin(), images.end(), [&](const Image& image) { return trial.find(image).has_value(); }));

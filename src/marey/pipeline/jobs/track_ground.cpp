@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "marey/filter/usual_motion.h"
+#include "marey/filter/default_motion.h"
 #include "marey/pipeline/jobs/ground_size.h"
 
 namespace marey::pipeline::jobs {

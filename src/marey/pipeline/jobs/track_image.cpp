@@ -1,7 +1,7 @@
 #include "marey/pipeline/jobs/track_image.h"
 
 #include "marey/files/overwriting.h"
-#include "marey/filter/usual_motion.h"
+#include "marey/filter/default_motion.h"
 #include "marey/geometry/bspline.h"
 
 namespace marey::pipeline::jobs {

@@ -16,10 +16,10 @@
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/geometry/median.h"
-#include "marey/pipeline/keypoints/followed_people.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 #include "marey/pipeline/keypoints/keypoint_tracks.h"
+#include "marey/pipeline/keypoints/tracked_people.h"
 #include "marey/reconstruct/keypoints/clock_offsets.h"
 #include "marey/reconstruct/keypoints/person_path.h"
 

@@ -2,10 +2,10 @@
 //
 // Each camera's people are searched in the regions that its last image gave (camera_people.h), all cameras' regions by one pool of
 // threads. The people in each camera, and where their points are, come from the parts that serve recordings too
-// (reconstruct/keypoints/people_in_views.h); a causal filter follows each point (placed_people.h). A person that a camera has lost,
-// or who enters its image, is searched for where the others place them; the person detector runs only when a region has ended, when
-// a camera sees no person, and every few seconds, in one image of an instant at most. Cost: one run of the landmark network for
-// each person and camera.
+// (reconstruct/keypoints/people_in_views.h); a causal filter follows each point (located_people.h). A person that a camera has
+// lost, or who enters its image, is searched for where the others place them; the person detector runs only when a region has
+// ended, when a camera sees no person, and every few seconds, in one image of an instant at most. Cost: one run of the landmark
+// network for each person and camera.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 #include "marey/core/rig.h"
 #include "marey/pipeline/corridor/run.h"
 #include "marey/pipeline/keypoints/images_with_people.h"
-#include "marey/pipeline/keypoints/placed_people.h"
+#include "marey/pipeline/keypoints/located_people.h"
 
 namespace marey::pipeline::keypoints {
 

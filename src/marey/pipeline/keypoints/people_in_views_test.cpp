@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/pipeline/keypoints/seen_room_test.h"
+#include "marey/pipeline/keypoints/observed_room_test.h"
 
 namespace marey::pipeline::keypoints {
 namespace {

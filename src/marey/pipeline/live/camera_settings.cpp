@@ -7,7 +7,7 @@
 #include "marey/core/error.h"
 #include "marey/files/source_name.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 
 namespace marey::pipeline::live {
 

@@ -14,7 +14,7 @@
 #include "marey/pipeline/people/image_log.h"
 #include "marey/pipeline/people/image_rows.h"
 #include "marey/pipeline/people/image_tracking.h"
-#include "marey/pipeline/people/nobody_found.h"
+#include "marey/pipeline/people/no_people_found.h"
 #include "marey/pipeline/people/standing_people.h"
 #include "marey/track/image/live_tracks.h"
 

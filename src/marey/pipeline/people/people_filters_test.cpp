@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/filter/default_motion.h"
 #include "marey/filter/filters.h"
-#include "marey/filter/usual_motion.h"
 #include "marey/geometry/box.h"
 #include "marey/pipeline/people/image_stage.h"
 #include "marey/simulate/square/square_boxes.h"

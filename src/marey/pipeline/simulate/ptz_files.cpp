@@ -16,7 +16,7 @@
 #include "marey/draw/movie_writer.h"
 #include "marey/files/whole_file.h"
 #include "marey/format/match/ground_file.h"
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 
 namespace marey::pipeline::simulate {
 namespace {

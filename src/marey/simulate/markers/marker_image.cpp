@@ -11,7 +11,7 @@
 
 #include "marey/simulate/markers/discs.h"
 #include "marey/simulate/markers/marker_ground.h"
-#include "marey/simulate/people/camera_look.h"
+#include "marey/simulate/people/image_degradation.h"
 
 namespace marey::simulate::markers {
 namespace {

@@ -11,7 +11,7 @@
 #include "marey/geometry/pitch.h"
 #include "marey/simulate/camera_shake.h"
 #include "marey/simulate/match/match_view.h"
-#include "marey/simulate/people/camera_look.h"
+#include "marey/simulate/people/image_degradation.h"
 
 namespace marey::simulate::match {
 

@@ -14,7 +14,7 @@
 #include "marey/simulate/match/match_view.h"
 #include "marey/simulate/match/operator_motion.h"
 #include "marey/simulate/match/ptz_background.h"
-#include "marey/simulate/people/camera_look.h"
+#include "marey/simulate/people/image_degradation.h"
 
 namespace marey::simulate::match {
 

@@ -8,9 +8,9 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/image.h"
-#include "marey/simulate/people/camera_look.h"
 #include "marey/simulate/people/exposure.h"
 #include "marey/simulate/people/figure.h"
+#include "marey/simulate/people/image_degradation.h"
 #include "marey/simulate/people/silhouette_raster.h"
 
 namespace marey::simulate::people {

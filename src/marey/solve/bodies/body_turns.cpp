@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "marey/assign/no_index.h"
-#include "marey/solve/bodies/body_follower.h"
+#include "marey/solve/bodies/body_tracker.h"
 
 namespace marey::solve::bodies {
 namespace {

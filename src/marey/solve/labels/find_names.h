@@ -7,8 +7,8 @@
 
 #include "marey/core/hooks.h"
 #include "marey/core/recording.h"
-#include "marey/solve/labels/label_follower.h"
 #include "marey/solve/labels/label_recording.h"
+#include "marey/solve/labels/label_tracker.h"
 
 namespace marey::solve::labels {
 

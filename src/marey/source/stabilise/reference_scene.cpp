@@ -66,7 +66,7 @@ std::vector<cv::Point2f> corners_of(const cv::Mat& image, int maximum, double mi
 
 }  // namespace
 
-StandingScene::StandingScene(cv::Size image, const std::optional<PinholeView>& known, const StandingSceneOptions& options)
+ReferenceScene::ReferenceScene(cv::Size image, const std::optional<PinholeView>& known, const ReferenceSceneOptions& options)
     : options_(options), image_(image), focal_known_(known.has_value()) {
   shrink_ = std::max(1, (image.width + options.max_across - 1) / options.max_across);
   size_ = {std::max(1, image.width / shrink_), std::max(1, image.height / shrink_)};
@@ -79,18 +79,18 @@ StandingScene::StandingScene(cv::Size image, const std::optional<PinholeView>& k
   }
 }
 
-std::vector<cv::Mat> StandingScene::pyramid_of(const cv::Mat& image, bool gradients) {
+std::vector<cv::Mat> ReferenceScene::pyramid_of(const cv::Mat& image, bool gradients) {
   std::vector<cv::Mat> pyramid;
   cv::buildOpticalFlowPyramid(image, pyramid, {kWindow, kWindow}, kLevels, gradients);
   return pyramid;
 }
 
-PinholeView StandingScene::view() const {
+PinholeView ReferenceScene::view() const {
   return {view_.focal * shrink_, (view_.principal + Vector<2>(0.5, 0.5)) * shrink_ - Vector<2>(0.5, 0.5)};
 }
 
 /// Levels are brought to one mean and contrast, so that a cloud changes little.
-cv::Mat StandingScene::shrunk(const Image& image) const {
+cv::Mat ReferenceScene::shrunk(const Image& image) const {
   const cv::Mat luma = image.luma()({0, 0, size_.width * shrink_, size_.height * shrink_});
   cv::Mat small = luma, result;
   if (shrink_ > 1) cv::resize(luma, small, size_, 0, 0, cv::INTER_AREA);
@@ -102,7 +102,7 @@ cv::Mat StandingScene::shrunk(const Image& image) const {
   return result;
 }
 
-bool StandingScene::take_corners(const cv::Mat& from) {
+bool ReferenceScene::take_corners(const cv::Mat& from) {
   Corners corners;
   corners.at = corners_of(from, options_.corners, options_.min_corner);
   if (std::ssize(corners.at) < options_.min_corners) return false;
@@ -114,8 +114,8 @@ bool StandingScene::take_corners(const cv::Mat& from) {
 }
 
 /// Where the corners that can be followed are seen; `within` is how many would be in the image.
-std::vector<TrackedPosition> StandingScene::track_corners(const Corners& corners, const std::vector<cv::Mat>& pyramid,
-                                                          const SceneMotion& start, int& within) const {
+std::vector<TrackedPosition> ReferenceScene::track_corners(const Corners& corners, const std::vector<cv::Mat>& pyramid,
+                                                           const SceneMotion& start, int& within) const {
   const Matrix<3> to_picture = moved_from_rest(start, view_);
   const auto inside = [this](const cv::Point2f& at) {
     return at.x >= kBorder && at.y >= kBorder && at.x < size_.width - kBorder && at.y < size_.height - kBorder;
@@ -141,7 +141,7 @@ std::vector<TrackedPosition> StandingScene::track_corners(const Corners& corners
   return locations;
 }
 
-std::optional<SceneFit> StandingScene::fit(const std::vector<TrackedPosition>& locations, int within, std::size_t all) const {
+std::optional<SceneFit> ReferenceScene::fit(const std::vector<TrackedPosition>& locations, int within, std::size_t all) const {
   const auto found = fit_motion(locations, view_, options_.agree);
   if (!found || found->agreeing < options_.min_corners || found->agreeing < options_.fraction * within) return std::nullopt;
   if (found->agreeing < options_.fraction_of_all * static_cast<double>(all)) return std::nullopt;
@@ -150,8 +150,8 @@ std::optional<SceneFit> StandingScene::fit(const std::vector<TrackedPosition>& l
   return found;
 }
 
-std::optional<SceneFit> StandingScene::find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid,
-                                                 const SceneMotion& start, std::vector<TrackedPosition>* kept) const {
+std::optional<SceneFit> ReferenceScene::find_from(const Corners& corners, const std::vector<cv::Mat>& pyramid,
+                                                  const SceneMotion& start, std::vector<TrackedPosition>* kept) const {
   int within = 0;
   std::vector<TrackedPosition> locations = track_corners(corners, pyramid, start, within);
   auto found = fit(locations, within, corners.at.size());
@@ -159,7 +159,7 @@ std::optional<SceneFit> StandingScene::find_from(const Corners& corners, const s
   return found;
 }
 
-cv::Mat StandingScene::coarse(const cv::Mat& image) const {
+cv::Mat ReferenceScene::coarse(const cv::Mat& image) const {
   cv::Mat small, result;
   cv::resize(image, small, {}, 1.0 / kCoarse, 1.0 / kCoarse, cv::INTER_AREA);
   small.convertTo(result, CV_32F);
@@ -167,7 +167,7 @@ cv::Mat StandingScene::coarse(const cv::Mat& image) const {
 }
 
 /// With all corners that are known, from wherever the whole image seems to have gone.
-std::optional<SceneFit> StandingScene::find_anywhere(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+std::optional<SceneFit> ReferenceScene::find_anywhere(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
   const cv::Mat small = coarse(now);
   cv::Mat window;
   cv::createHanningWindow(window, small.size(), CV_32F);
@@ -185,7 +185,7 @@ std::optional<SceneFit> StandingScene::find_anywhere(const cv::Mat& now, const s
 }
 
 /// The focal length with which the images' places lie best.
-void StandingScene::settle_focal(const std::vector<std::vector<TrackedPosition>>& images) {
+void ReferenceScene::settle_focal(const std::vector<std::vector<TrackedPosition>>& images) {
   double minimum = 0;
   std::optional<double> best;
   for (const double focal : kFocals) {
@@ -203,7 +203,7 @@ void StandingScene::settle_focal(const std::vector<std::vector<TrackedPosition>>
 }
 
 /// While images come one by one: as soon as there are enough to determine it. Whether it has changed.
-bool StandingScene::learn_focal(const std::vector<TrackedPosition>& locations, const SceneMotion& motion) {
+bool ReferenceScene::learn_focal(const std::vector<TrackedPosition>& locations, const SceneMotion& motion) {
   if (focal_known_ || motion.turn.head<2>().norm() * view_.focal < options_.reports_focal) return false;
   for_focal_.push_back(locations);
   if (for_focal_.size() != kFirstFocalImages && for_focal_.size() != kFocalImages) return false;
@@ -213,7 +213,7 @@ bool StandingScene::learn_focal(const std::vector<TrackedPosition>& locations, c
   return true;
 }
 
-cv::Mat StandingScene::at_rest(const cv::Mat& now, const SceneMotion& motion) const {
+cv::Mat ReferenceScene::at_rest(const cv::Mat& now, const SceneMotion& motion) const {
   const Matrix<3> h = moved_from_rest(motion, view_);
   const cv::Matx33d by(h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1), h(1, 2), h(2, 0), h(2, 1), h(2, 2));
   cv::Mat result;
@@ -222,7 +222,7 @@ cv::Mat StandingScene::at_rest(const cv::Mat& now, const SceneMotion& motion) co
 }
 
 /// Into the mean of recent images; whether it has changed.
-bool StandingScene::remember(const cv::Mat& now, const SceneMotion& motion) {
+bool ReferenceScene::remember(const cv::Mat& now, const SceneMotion& motion) {
   if (++since_mean_ < kMeanEvery) return false;
   since_mean_ = 0;
   if (mean_.empty()) mean_ = cv::Mat::zeros(size_, CV_32F);
@@ -237,7 +237,7 @@ bool StandingScene::remember(const cv::Mat& now, const SceneMotion& motion) {
 }
 
 /// New corners out of the mean of recent images where too few of the old ones are found again.
-void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
+void ReferenceScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
   Corners& corners = corners_[used_];
   const double fraction = static_cast<double>(fit.agreeing) / static_cast<double>(corners.at.size());
   agreed_ = agreed_ == 0 ? fraction : agreed_ + 0.05 * (fraction - agreed_);
@@ -252,7 +252,7 @@ void StandingScene::keep_up(const cv::Mat& now, const SceneFit& fit) {
 
 /// By the last image whose motion is known: where a person hides what the scene was known by, or has uncovered it, one image
 /// still shows what the next one does. From time to time the scene's corners are taken again then.
-std::optional<SceneMotion> StandingScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+std::optional<SceneMotion> ReferenceScene::find_from_before(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
   if (before_image_.empty()) return std::nullopt;
   if (before_.pyramid.empty()) {
     before_.at = corners_of(before_image_, options_.corners, options_.min_corner);
@@ -276,7 +276,7 @@ std::optional<SceneMotion> StandingScene::find_from_before(const cv::Mat& now, c
 }
 
 /// Against the scene with all pixels.
-std::optional<SceneMotion> StandingScene::find_by_all_pixels(const cv::Mat& now) {
+std::optional<SceneMotion> ReferenceScene::find_by_all_pixels(const cv::Mat& now) {
   if (lost_run_ >= kAllPixelsAtFirst && lost_run_ % kSearchAgain != 0) return std::nullopt;
   const auto found = appearances_.find(SceneAppearance(now), view_, options_.farthest * size_.width);
   if (!found) return std::nullopt;
@@ -285,7 +285,7 @@ std::optional<SceneMotion> StandingScene::find_by_all_pixels(const cv::Mat& now)
 }
 
 /// By corners, from where the camera was last or from anywhere.
-std::optional<SceneFit> StandingScene::find_by_corners(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
+std::optional<SceneFit> ReferenceScene::find_by_corners(const cv::Mat& now, const std::vector<cv::Mat>& pyramid) {
   if (corners_.empty()) return std::nullopt;
   std::vector<TrackedPosition> locations;
   auto found = find_from(corners_[used_], pyramid, last_, &locations);
@@ -293,7 +293,7 @@ std::optional<SceneFit> StandingScene::find_by_corners(const cv::Mat& now, const
   return learn_focal(locations, found->motion) ? fit_motion(locations, view_, options_.agree) : found;
 }
 
-std::optional<SceneMotion> StandingScene::find(const Image& image) {
+std::optional<SceneMotion> ReferenceScene::find(const Image& image) {
   if (image.size() != image_) return std::nullopt;
   const cv::Mat now = shrunk(image);
   if (corners_.empty() && appearances_.empty()) {

@@ -24,7 +24,7 @@
 namespace marey::source::stabilise {
 
 /// In shrunk px where nothing else is said.
-struct StandingSceneOptions {
+struct ReferenceSceneOptions {
   int max_across = 800;           ///< px of a shrunk image
   int corners = 240;              ///< at most
   double min_corner = 8;          ///< squared grey levels of gradient over a window of 7 px, along the direction where it is less
@@ -38,10 +38,10 @@ struct StandingSceneOptions {
   double reports_focal = 1.5;     ///< px of motion, from which on the focal length shows
 };
 
-class StandingScene {
+class ReferenceScene {
  public:
   /// `known` is the lens where it is calibrated, px of the whole image; else the focal length is found out.
-  StandingScene(cv::Size image, const std::optional<PinholeView>& known, const StandingSceneOptions& options = {});
+  ReferenceScene(cv::Size image, const std::optional<PinholeView>& known, const ReferenceSceneOptions& options = {});
 
   /// Learns from images of the beginning, at any distance in time: the rest is then the middle of what they show, the focal
   /// length is settled, and no person who walks is among the corners. False where nothing is seen that stands: it then knows
@@ -90,7 +90,7 @@ class StandingScene {
   cv::Mat at_rest(const cv::Mat& now, const SceneMotion& motion) const;
   cv::Mat coarse(const cv::Mat& image) const;
 
-  StandingSceneOptions options_;
+  ReferenceSceneOptions options_;
   cv::Size image_;
   int shrink_ = 1;
   cv::Size size_;

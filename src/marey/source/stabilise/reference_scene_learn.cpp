@@ -31,7 +31,7 @@ cv::Mat median_image(const std::vector<cv::Mat>& images) {
 }  // namespace
 
 /// How many of the samples show what one of them does: those then have places and motions against it.
-std::size_t StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
+std::size_t ReferenceScene::begin_with(std::vector<Sampled>& samples, std::size_t anchor) {
   corners_.clear();
   if (!take_corners(samples[anchor].shrunk)) return 0;
   last_ = {};
@@ -49,7 +49,7 @@ std::size_t StandingScene::begin_with(std::vector<Sampled>& samples, std::size_t
 }
 
 /// The same by all pixels: against one sample first, then against the median of those that were found, in which less moves.
-std::size_t StandingScene::begin_with_all_pixels(std::vector<Sampled>& samples, std::size_t anchor) {
+std::size_t ReferenceScene::begin_with_all_pixels(std::vector<Sampled>& samples, std::size_t anchor) {
   std::vector<SceneAppearance> appearances;
   for (const Sampled& sample : samples) appearances.emplace_back(sample.shrunk);
   SceneAppearance scene = appearances[anchor];
@@ -70,7 +70,7 @@ std::size_t StandingScene::begin_with_all_pixels(std::vector<Sampled>& samples, 
 }
 
 /// The median of samples as the camera at `rest` would have taken them.
-cv::Mat StandingScene::laid_over(const std::vector<Sampled>& samples, const SceneMotion& rest) const {
+cv::Mat ReferenceScene::laid_over(const std::vector<Sampled>& samples, const SceneMotion& rest) const {
   std::vector<cv::Mat> back;
   std::vector<const Sampled*> found;
   for (const Sampled& sample : samples) {
@@ -82,7 +82,7 @@ cv::Mat StandingScene::laid_over(const std::vector<Sampled>& samples, const Scen
 }
 
 /// By corners; if those report too few samples, by all pixels if they report more. Whether a third is reported of.
-bool StandingScene::begin(std::vector<Sampled>& samples) {
+bool ReferenceScene::begin(std::vector<Sampled>& samples) {
   if (samples.empty()) return false;
   std::vector<Sampled> best;
   std::size_t maximum = 0;
@@ -101,7 +101,7 @@ bool StandingScene::begin(std::vector<Sampled>& samples) {
   return true;
 }
 
-bool StandingScene::learn(std::span<const Image> images) {
+bool ReferenceScene::learn(std::span<const Image> images) {
   std::vector<Sampled> samples;
   for (const Image& image : images) {
     if (image.size() == image_) samples.push_back({shrunk(image), {}, {}});

@@ -55,7 +55,7 @@ double squared_motion(const Matrix<3>& homography, cv::Size size) {
 
 class StabilisedSource final : public Source {
  public:
-  StabilisedSource(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<StabilisationLog> log)
+  StabilisedSource(std::unique_ptr<Source> source, ReferenceScene scene, std::shared_ptr<StabilisationLog> log)
       : source_(std::move(source)), log_(log), stabiliser_(std::move(scene), std::move(log)) {}
 
   const SourceInfo& info() const override { return source_->info(); }
@@ -173,14 +173,14 @@ Frame Stabiliser::stabilised(Frame frame) {
   return frame;
 }
 
-std::unique_ptr<Source> stabilised(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<StabilisationLog> log) {
+std::unique_ptr<Source> stabilised(std::unique_ptr<Source> source, ReferenceScene scene, std::shared_ptr<StabilisationLog> log) {
   return std::make_unique<StabilisedSource>(std::move(source), std::move(scene), std::move(log));
 }
 
 std::optional<double> motion_among(std::span<const Frame> samples) {
   if (samples.size() < 2 || samples.front().image.empty()) return std::nullopt;
   const cv::Size size = samples.front().image.size();
-  StandingScene scene(size, std::nullopt);
+  ReferenceScene scene(size, std::nullopt);
   std::vector<Image> images;
   for (const Frame& frame : samples) {
     if (frame.image.size() == size) images.push_back(frame.image);

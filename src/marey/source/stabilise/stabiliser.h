@@ -56,20 +56,20 @@ std::vector<std::string> warned(const StabilisationLog::Report& report);
 /// Brings images of a shaking camera to where it rests.
 class Stabiliser {
  public:
-  Stabiliser(StandingScene scene, std::shared_ptr<StabilisationLog> log) : scene_(std::move(scene)), log_(std::move(log)) {}
+  Stabiliser(ReferenceScene scene, std::shared_ptr<StabilisationLog> log) : scene_(std::move(scene)), log_(std::move(log)) {}
 
   /// The image as the camera at rest would show it. What it does not show there is as it was shown last; before that, as the edge
   /// is. An image that cannot be stabilised comes back as it is, and the log says so. Frames come in order.
   Frame stabilised(Frame frame);
 
  private:
-  StandingScene scene_;
+  ReferenceScene scene_;
   std::shared_ptr<StabilisationLog> log_;
   Image last_;
 };
 
 /// The same source, stabilised, without the images that cannot be: their time passes.
-std::unique_ptr<Source> stabilised(std::unique_ptr<Source> source, StandingScene scene, std::shared_ptr<StabilisationLog> log);
+std::unique_ptr<Source> stabilised(std::unique_ptr<Source> source, ReferenceScene scene, std::shared_ptr<StabilisationLog> log);
 
 /// How far the camera moved between images, px root mean square; nothing if that cannot be reported.
 std::optional<double> motion_among(std::span<const Frame> samples);

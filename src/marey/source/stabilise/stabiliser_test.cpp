@@ -81,12 +81,12 @@ double observed_motion(const SceneMotion& motion, const PinholeView& view, const
   return worst;
 }
 
-TEST(StandingScene, TellsWhereThePictureLooksThoughSomebodyWalks) {
+TEST(ReferenceScene, TellsWhereThePictureLooksThoughSomebodyWalks) {
   for (const double size : {1.0, 5.0, 20.0}) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(testing::Message() << size << " px, seed " << seed);
       const cv::Mat scene = scene_of(seed);
-      StandingScene standing(kSize, std::nullopt);
+      ReferenceScene standing(kSize, std::nullopt);
       double worst = 0;
       for (int i = 0; i < 60; ++i) {
         const auto motion = standing.find(detected(scene, from_first(i, size), 5 * i, 100 * seed + static_cast<unsigned>(i)));
@@ -99,11 +99,11 @@ TEST(StandingScene, TellsWhereThePictureLooksThoughSomebodyWalks) {
   }
 }
 
-TEST(StandingScene, IsNotLostWhereSomebodyInPlainClothesHidesMostOfIt) {
+TEST(ReferenceScene, IsNotLostWhereSomebodyInPlainClothesHidesMostOfIt) {
   const cv::Mat scene = scene_of(6);
   std::vector<Image> samples;
   for (unsigned i = 0; i < 30; ++i) samples.push_back(detected(scene, {0, 0}, static_cast<int>(12 * i), i));
-  StandingScene standing(kSize, std::nullopt);
+  ReferenceScene standing(kSize, std::nullopt);
   ASSERT_TRUE(standing.learn(samples));
   for (int i = 0; i < 140; ++i) {
     const int hidden = i < 100 ? std::min(390, 6 * i) : std::max(0, 390 - 15 * (i - 100));
@@ -115,11 +115,11 @@ TEST(StandingScene, IsNotLostWhereSomebodyInPlainClothesHidesMostOfIt) {
   }
 }
 
-TEST(StandingScene, RestsInTheMiddleOfWhatItLearned) {
+TEST(ReferenceScene, RestsInTheMiddleOfWhatItLearned) {
   const cv::Mat scene = scene_of(4);
   std::vector<Image> samples;
   for (int i = 0; i < 30; ++i) samples.push_back(detected(scene, Vector<2>(9, 3) + shake(i, 4), 12 * i, static_cast<unsigned>(i)));
-  StandingScene standing(kSize, std::nullopt);
+  ReferenceScene standing(kSize, std::nullopt);
   ASSERT_TRUE(standing.learn(samples));
   const auto motion = standing.find(detected(scene, Vector<2>(9, 3), 500, 99));
   ASSERT_TRUE(motion);
@@ -146,14 +146,14 @@ Image traffic(const cv::Mat& road, const Vector<2>& by, int index) {
   return Image(noisy);
 }
 
-TEST(StandingScene, KeepsSmallPicturesThatCarsFill) {
+TEST(ReferenceScene, KeepsSmallPicturesThatCarsFill) {
   for (const auto& [size, seed] : {std::pair(4.0, 21U), std::pair(10.0, 22U)}) {
     SCOPED_TRACE(testing::Message() << size << " px, seed " << seed);
     cv::Mat road;
     scene_of(seed)(cv::Rect(0, 0, 520, 400)).convertTo(road, CV_8U, 0.4, 75);
     std::vector<Image> samples;
     for (int i = 0; i < 30; ++i) samples.push_back(traffic(road, shake(4 * i, size), 4 * i));
-    StandingScene standing({320, 240}, std::nullopt);
+    ReferenceScene standing({320, 240}, std::nullopt);
     ASSERT_TRUE(standing.learn(samples));
     std::optional<Vector<2>> rest;
     for (int i = 0; i < 60; ++i) {
@@ -168,7 +168,7 @@ TEST(StandingScene, KeepsSmallPicturesThatCarsFill) {
   }
 }
 
-TEST(StandingScene, LearnsNothingWhereNothingStands) {
+TEST(ReferenceScene, LearnsNothingWhereNothingStands) {
   std::vector<Image> samples;
   std::mt19937 random(5);
   for (int i = 0; i < 10; ++i) {
@@ -176,7 +176,7 @@ TEST(StandingScene, LearnsNothingWhereNothingStands) {
     for (int k = 0; k < static_cast<int>(image.total()); ++k) image.data[k] = static_cast<std::uint8_t>(118 + random() % 5);
     samples.emplace_back(image);
   }
-  StandingScene standing(kSize, std::nullopt);
+  ReferenceScene standing(kSize, std::nullopt);
   EXPECT_FALSE(standing.learn(samples));
   EXPECT_FALSE(standing.learn({}));
   std::vector<Image> black(10, Image(cv::Mat(kSize, CV_8UC1, cv::Scalar(0))));
@@ -184,9 +184,9 @@ TEST(StandingScene, LearnsNothingWhereNothingStands) {
   EXPECT_FALSE(standing.find(black.front()));
 }
 
-TEST(StandingScene, FollowsTheSceneThroughClouds) {
+TEST(ReferenceScene, FollowsTheSceneThroughClouds) {
   const cv::Mat scene = scene_of(6);
-  StandingScene standing(kSize, std::nullopt);
+  ReferenceScene standing(kSize, std::nullopt);
   for (int i = 0; i < 60; ++i) {
     cv::Mat dark;
     detected(scene, from_first(i, 3), 5 * i, static_cast<unsigned>(i)).luma().convertTo(dark, CV_8U, i > 20 ? 0.55 : 1.0);
@@ -199,7 +199,7 @@ TEST(StandingScene, FollowsTheSceneThroughClouds) {
 TEST(Stabiliser, GivesThePictureOfTheRest) {
   const cv::Mat scene = scene_of(7);
   const auto log = std::make_shared<StabilisationLog>();
-  Stabiliser steadier(StandingScene(kSize, std::nullopt), log);
+  Stabiliser steadier(ReferenceScene(kSize, std::nullopt), log);
   const Image rest = detected(scene, Vector<2>(0, 0), 2000, 1);
   steadier.stabilised(frame_of(rest, 0));
   for (int i = 1; i < 30; ++i) {
@@ -219,7 +219,7 @@ TEST(Stabiliser, GivesThePictureOfTheRest) {
 TEST(Stabiliser, SaysWhatItCouldNotSteadyAndComesBack) {
   const cv::Mat scene = scene_of(8), other = scene_of(9);
   const auto log = std::make_shared<StabilisationLog>();
-  Stabiliser steadier(StandingScene(kSize, std::nullopt), log);
+  Stabiliser steadier(ReferenceScene(kSize, std::nullopt), log);
   const auto lost_at = [](int i) { return i >= 20 && i < 60; };
   int wrong = 0;
   for (int i = 0; i < 90; ++i) {
@@ -237,7 +237,7 @@ TEST(Stabiliser, SaysWhatItCouldNotSteadyAndComesBack) {
 TEST(Stabiliser, SaysThatTheCameraWasTurnedForGood) {
   const cv::Mat scene = scene_of(10);
   const auto log = std::make_shared<StabilisationLog>();
-  Stabiliser steadier(StandingScene(kSize, std::nullopt), log);
+  Stabiliser steadier(ReferenceScene(kSize, std::nullopt), log);
   for (int i = 0; i < 250; ++i) {
     const Vector<2> by = from_first(i, 2) + (i >= 120 ? Vector<2>(30, -12) : Vector<2>(0, 0));
     steadier.stabilised(frame_of(detected(scene, by, i, static_cast<unsigned>(i)), i));

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "marey/core/ground_views.h"
-#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_observations.h"
 
 namespace marey::track::ball {
 

@@ -8,7 +8,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/ground_view.h"
-#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_observations.h"
 
 namespace marey::track::ball {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "marey/core/ground_views.h"
-#include "marey/track/ball/ball_moment.h"
 #include "marey/track/ball/ball_motion.h"
+#include "marey/track/ball/ball_observations.h"
 
 namespace marey::track::ball {
 

@@ -10,7 +10,7 @@
 #include "marey/detect/ball/ball_detector.h"
 #include "marey/pipeline/corridor/run.h"
 #include "marey/reconstruct/ground_area.h"
-#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_observations.h"
 #include "marey/track/ball/ball_trajectory.h"
 
 namespace marey::pipeline::people::ground {

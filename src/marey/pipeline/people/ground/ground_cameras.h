@@ -15,7 +15,7 @@
 #include "marey/pipeline/people/ground/ground_camera.h"
 #include "marey/pipeline/people/ground/people_on_ground.h"
 #include "marey/reconstruct/ground_area.h"
-#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_observations.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline::people::ground {

@@ -13,7 +13,7 @@
 #include "marey/pipeline/people/ground/ground_boxes.h"
 #include "marey/pipeline/people/ground/ground_scene.h"
 #include "marey/pipeline/people/ground/people_on_ground.h"
-#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_observations.h"
 #include "marey/track/ground/offline/ground_recorder.h"
 
 namespace marey::pipeline::people::ground {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/people/nobody_found.h"
+#include "marey/pipeline/people/no_people_found.h"
 
 namespace marey::pipeline::people::ground {
 namespace {

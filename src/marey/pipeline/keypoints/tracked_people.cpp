@@ -1,4 +1,4 @@
-#include "marey/pipeline/keypoints/followed_people.h"
+#include "marey/pipeline/keypoints/tracked_people.h"
 
 #include <algorithm>
 #include <chrono>

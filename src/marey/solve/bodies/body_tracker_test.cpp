@@ -1,4 +1,4 @@
-#include "marey/solve/bodies/body_follower.h"
+#include "marey/solve/bodies/body_tracker.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "marey/format/rig/rig_turns.h"
+#include "marey/format/rig/rig_ptz.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "marey/pipeline/people/nobody_found.h"
+#include "marey/pipeline/people/no_people_found.h"
 
 #include <string_view>
 

@@ -1,4 +1,4 @@
-#include "marey/solve/labels/label_follower.h"
+#include "marey/solve/labels/label_tracker.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "marey/filter/usual_motion.h"
+#include "marey/filter/default_motion.h"
 
 #include <cmath>
 

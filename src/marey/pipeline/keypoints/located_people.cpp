@@ -1,4 +1,4 @@
-#include "marey/pipeline/keypoints/placed_people.h"
+#include "marey/pipeline/keypoints/located_people.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 // In the order in which light meets them: the lens blurs, the camera sharpens (an unsharp mask, whose overshoot is the halo),
 // chroma is filtered harder than luma and comes late, and the codec rounds the cosine coefficients of each block, more coarsely the
 // faster they change. Cost: five separable filters and a cosine transform in each direction.
-#include "marey/simulate/people/camera_look.h"
+#include "marey/simulate/people/image_degradation.h"
 
 #include <cmath>
 
