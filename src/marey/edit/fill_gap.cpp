@@ -62,7 +62,7 @@ std::optional<FilledGap> decide(Tracks& tracks, TrackId track, const Gap& gap, c
   const FillTrials trials(piece.locations, piece.hole, donors);
   std::optional<std::pair<FillMethod, FillScore>> best;
   for (const FillMethod method : {FillMethod::spline, FillMethod::rigid, FillMethod::pattern}) {
-    if ((required && method != *required) || !filled(method, piece.locations, piece.hole, donors, piece.hole)) continue;
+    if (required.value_or(method) != method || !filled(method, piece.locations, piece.hole, donors, piece.hole)) continue;
     const FillScore score = trials.score(method);
     if (!best || score.typical_m < best->second.typical_m) best = {method, score};
   }
