@@ -151,7 +151,7 @@ void add_extent(Json& scene, const std::optional<Extent>& extent) {
 void add_ground(Json& scene, const RecordingHeader& header, std::optional<bool> y_down, const Json& pitch) {
   if (frame_name(header.frame.kind) != std::string_view("ground")) return;
   scene["pitch"] = pitch;
-  scene["y_down"] = y_down.value_or(y_grows_down(header));
+  scene["y_down"] = y_down ? *y_down : y_grows_down(header);
 }
 
 }  // namespace
