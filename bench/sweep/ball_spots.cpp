@@ -205,12 +205,12 @@ Score score_of(const Spots& spots, const std::vector<std::optional<BallState>>& 
     if (location && states[i]) score.off.push_back((states[i]->belief.location() - *location).norm());
     for (std::size_t c = 0; c < cameras; ++c) {
       const auto& truth = spots.truth.images[i * cameras + c];
-      const bool states = states[i] && (states[i]->cameras & mask_of(CameraId{static_cast<int>(c)})) != 0;
-      const auto at = states ? spots.cameras[c].camera()->project(states[i]->belief.location()) : std::nullopt;
+      const bool reported = states[i] && (states[i]->cameras & mask_of(CameraId{static_cast<int>(c)})) != 0;
+      const auto at = reported ? spots.cameras[c].camera()->project(states[i]->belief.location()) : std::nullopt;
       constexpr double kNear = 4;  // px
       const bool hit = at && truth && truth->visible > 0 && (*at - truth->pixel).norm() <= kNear;
       score.hits += hit ? 1 : 0;
-      score.wrong += states && !hit ? 1 : 0;
+      score.wrong += reported && !hit ? 1 : 0;
       score.missed += truth && truth->visible > 0 && !hit ? 1 : 0;
     }
   }
