@@ -2,7 +2,7 @@
 //
 // A track keeps its name while its distances to its steadiest named neighbours are about the learned ones, and while it lies on the
 // learned side of those that are rigid with it. A track without a name, and one uncertain, are open; so are the names that no
-// person has for certain. How well open names fit open tracks is the mean, since a track is open, of
+// track has for certain. How well open names fit open tracks is the mean, since a track is open, of
 //   - the distances to the neighbours, as DistanceModel has it,
 //   - the side (four_points.h),
 //   - where the name was lost: how far it lies from where its neighbours carried it since.
@@ -47,7 +47,7 @@ struct TrackedPoint {
 
 class LabelTracker {
  public:
-  /// `learned` must outlive it. `seen`: distances of each two names in the recording at hand, of none or all; `scale` as
+  /// `learned` must outlive it. `detected`: distances of each two names in the recording at hand, of none or all; `scale` as
   /// DistanceModel has it.
   LabelTracker(const LearnedMarkers& learned, double scale, std::span<const DistanceObserved> detected,
                const LabelTrackerOptions& options = {});
